@@ -83,7 +83,7 @@ def test_a_scenario_of_dynabarn_is_played(folder):
 @pytest.mark.parametrize(
     ("wrong", "complaint"),
     [
-        ("keyframes: [[0, 3, 1], [0, 3, -1]]", "slow::link: a course needs times that rise"),
+        ("keyframes: [[0, 3, 1], [0, 3, -1]]", "slow::link: a trajectory needs increasing times"),
         ("keyframes: [[0, 3]]", "keyframes must be lists of 3 numbers"),
         ("keyframes: [[0, 3, x]]", "keyframes must be lists of 3 numbers"),
     ],

@@ -13,7 +13,7 @@ WHOLE = """\
 about: all keys
 world: {file: ROOT/map/home.world, map: ROOT/map/home.yaml}
 robot: {profile: turtlebot_lidar, start: {x: 0.5, y: 0.1, yaw: 0.2}}
-simulation: {noise: bad, range_noise: 0.02}
+simulation: {noise: high, range_noise: 0.02}
 task: {errand: ROOT/map/zones.yaml}
 happens:
   boxes: 3
@@ -49,7 +49,7 @@ def test_every_key_of_a_scenario_is_read(tmp_path):
         ("{file: ROOT/map/home.world", "{fiel: x", ":2: world needs one of file"),
         ("turtlebot_lidar", "turtlebto_lidar", ":3: robot.profile cannot be used: unknown robot"),
         ("y: 0.1", "y: left", ":3: robot.start.y must be a number"),
-        ("noise: bad", "noise: worse", ":4: simulation.noise cannot be used: noise must be one of"),
+        ("noise: high", "noise: worse", ":4: simulation.noise cannot be used: noise must be one of"),
         ("range_noise: 0.02", "range_noise: -1", "range_noise must be not negative, got -1"),
         ("range_noise", "rainge_noise", ":4: simulation.rainge_noise is not known"),
         ("task: {errand", "task: {errant", ":5: task needs one of errand"),

@@ -85,14 +85,14 @@ def test_cases_are_as_hard_as_allowed_and_no_harder():
 
 
 def test_only_the_pieces_that_it_takes_are_left():
-    case = Case(4, (BOX, WALK, FAULT, Noise("bad")))
+    case = Case(4, (BOX, WALK, FAULT, Noise("high")))
     tried = []
 
     def fails(less):
         tried.append(less)
-        return WALK in less.pieces and Noise("bad") in less.pieces
+        return WALK in less.pieces and Noise("high") in less.pieces
 
-    assert shrunk(case, fails).pieces == (WALK, Noise("bad"))
+    assert shrunk(case, fails).pieces == (WALK, Noise("high"))
     assert len(tried) < 12
     assert shrunk(case, lambda less: True).pieces == ()
     assert shrunk(case, lambda less: False) == case
@@ -109,7 +109,7 @@ def test_a_failure_is_harder_than_any_success_and_an_error_is_none():
 
 def test_a_case_is_written_as_a_scenario_that_is_played_alike(tmp_path):
     base = read_scenario(ERRAND)
-    case = Case(4, (BOX, WALK, FAULT, Noise("bad")))
+    case = Case(4, (BOX, WALK, FAULT, Noise("high")))
     path = write_case(base, case, Result("d", 4, "v", "timeout", "too late"), tmp_path)
     again = read_scenario(path)
     assert again.digest() == case.scenario(base).digest()

@@ -41,13 +41,13 @@ def places(world, *stamps):
     return [world.trajectories[0].at(stamp)[0] for stamp in stamps]
 
 
-def test_an_actor_walks_from_waypoint_to_waypoint_and_begins_anew(load):
+def test_an_actor_follows_its_waypoints_and_repeats_them(load):
     world = load(actor(script(WALK)))
     assert places(world, 0.0, 1.0, 2.0, 3.0, 5.0) == pytest.approx([3.0, 2.0, 1.0, 2.0, 2.0])
     assert world.warnings == ()
 
 
-def test_it_waits_before_it_starts_and_stays_where_it_ends_if_told_so(load):
+def test_an_actor_respects_its_start_delay_and_stays_at_the_end_without_loop(load):
     world = load(actor(script(WALK, "<loop>false</loop><delay_start>1.0</delay_start>")))
     assert places(world, 0.5, 2.0, 5.0, 100.0) == pytest.approx([3.0, 2.0, 3.0, 3.0])
 

@@ -1,4 +1,4 @@
-"""Models whose links hang together by joints."""
+"""Models with joints."""
 
 import math
 
@@ -71,7 +71,7 @@ def test_links_start_where_they_are_placed_whatever_the_joint_frame():
         assert scene.models.link_state(body.name).pose == pytest.approx(body.pose_in_world, abs=1e-5)
 
 
-def test_limits_hold_a_door():
+def test_joint_limits_stop_a_door():
     scene, _ = scene_of(
         link("door", "0.5 0 1 0 0 0", size="1 0.05 2"),
         joint(
@@ -103,14 +103,14 @@ def test_a_drawer_slides_along_its_axis():
 
 
 @pytest.mark.parametrize("bounds", [("-1.79769e+308", "1.79769e+308"), ("-inf", "inf"), ("-1e+16", "1e+16")])
-def test_what_gazebo_writes_where_there_is_no_limit_bounds_nothing(bounds):
+def test_numbers_that_gazebo_writes_for_no_limit_are_infinite(bounds):
     lower, upper = bounds
     limits = f"<lower>{lower}</lower><upper>{upper}</upper><effort>1.79769e+308</effort>"
     _, world = scene_of(link("wheel"), joint("revolute", "world", "wheel", limits=limits))
     assert (world.joints[0].lower, world.joints[0].upper, world.joints[0].effort) == (-np.inf, np.inf, np.inf)
 
 
-def test_what_is_fixed_together_falls_together():
+def test_links_with_a_fixed_joint_fall_together():
     scene, _ = scene_of(link("a", "0 0 9 0 0 0"), link("b", "1 0 9 0 0 0", 5.0), joint("fixed", "a", "b"))
     run(scene, 1.0)
     a, b = (scene.models.link_state(f"m::{name}").pose[:3, 3] for name in "ab")
@@ -119,14 +119,14 @@ def test_what_is_fixed_together_falls_together():
 
 
 @pytest.mark.parametrize("content", ["<gravity>0</gravity>", "<kinematic>1</kinematic>"])
-def test_what_has_no_weight_does_not_fall(content):
+def test_a_link_without_gravity_does_not_fall(content):
     weightless = link("a", "0 0 2 0 0 0").replace("<inertial>", content + "<inertial>")
     scene, _ = scene_of(weightless)
     run(scene, 1.0)
     assert scene.models.link_state("m::a").pose[2, 3] == pytest.approx(2.0, abs=1e-3)
 
 
-def test_a_whole_model_is_put_to_another_place():
+def test_the_pose_of_a_whole_model_can_be_set():
     scene, _ = scene_of(link("a", "0 0 1 0 0 0"), link("b", "1 0 1 0 0 0"), joint("revolute", "a", "b"))
     scene.set_model_state("m", KinematicState(pose3(5.0, 0.0, 1.0), np.zeros(3), np.zeros(3)))
     assert scene.models.link_state("m::b").pose[:3, 3] == pytest.approx([6.0, 0.0, 2.0], abs=1e-6)
@@ -142,7 +142,7 @@ def test_axes_before_sdf_1_5_are_those_of_the_model():
     assert new.joints[0].axis == pytest.approx([1.0, 0.0, 0.0], abs=1e-6)
 
 
-def test_joints_that_cannot_be_had_are_named():
+def test_unsupported_joints_give_a_warning():
     a, b = link("a"), link("b", "0 0 1 0 0 0")
     _, held = scene_of(a, b, joint("ball", "a", "b"))
     assert held.joints[0].kind == "fixed"
@@ -165,7 +165,7 @@ def test_joints_that_cannot_be_had_are_named():
         ("<joint name='hinge' type='fixed'/>", "joint 'hinge': <parent> is missing"),
     ],
 )
-def test_senseless_joints_are_errors_that_name_them(text, reason):
+def test_errors_about_joints_name_them(text, reason):
     with pytest.raises(WorldError, match="hinge") as caught:
         scene_of(link("a"), text)
     assert reason in str(caught.value)

@@ -1,4 +1,4 @@
-"""PyBullet keeps quiet."""
+"""PyBullet prints nothing."""
 
 import os
 import subprocess
@@ -16,7 +16,7 @@ print(Simulation(floor).step().stamp)
 ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
 
 
-def test_a_simulation_prints_nothing_of_its_own():
+def test_a_simulation_prints_nothing():
     ended = subprocess.run(
         [sys.executable, "-c", SIMULATE],
         env=ENVIRONMENT,

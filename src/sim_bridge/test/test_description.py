@@ -1,4 +1,4 @@
-"""Robots from URDF, xacro and SDF: their parts, and what Gazebo's plugins make of them."""
+"""Robots from URDF, xacro and SDF: their parts, and the drives and sensors of Gazebo plugins."""
 
 import math
 import os
@@ -91,7 +91,7 @@ def test_a_diff_drive_is_read_with_the_defaults_of_its_plugin():
     assert len(robot.model.base.collisions) == 2, "a caster is part of the base"
 
 
-def test_what_a_diff_drive_says_is_honoured():
+def test_parameters_of_a_diff_drive_are_read():
     more = """<robotNamespace>/r</robotNamespace><commandTopic>go</commandTopic>
     <odometryTopic>where</odometryTopic>
     <odometryFrame>o</odometryFrame><robotBaseFrame>chassis</robotBaseFrame><publishTf>false</publishTf>
@@ -107,14 +107,14 @@ def test_what_a_diff_drive_says_is_honoured():
     assert robot.joint_states.joints == ("left_hinge", "right_hinge")
 
 
-def test_wheels_that_are_named_the_wrong_way_round_still_turn_the_robot_the_right_way():
+def test_wheels_are_assigned_to_sides_by_position_not_by_name():
     swapped = DRIVE.format(more="").replace("left", "?").replace("right", "left").replace("?", "right")
     swapped = swapped.replace("rightJoint", "?").replace("leftJoint", "rightJoint").replace("?", "leftJoint")
     drive = read_urdf_robot(urdf(swapped), "mine.urdf").drive
     assert (drive.left_joints, drive.right_joints) == (("left_hinge",), ("right_hinge",))
 
 
-def test_a_laser_is_mounted_and_measures_as_its_sensor_says():
+def test_parameters_of_a_laser_are_read():
     robot = read_urdf_robot(urdf(DRIVE.format(more=""), LASER.format(roll="0")), "mine.urdf")
     laser = robot.laser
     assert (laser.topic, laser.frame, laser.beams, laser.rate, laser.noise) == (
@@ -125,7 +125,7 @@ def test_a_laser_is_mounted_and_measures_as_its_sensor_says():
     assert (laser.range_min, laser.range_max, laser.no_return) == (0.1, 8.0, math.inf)
 
 
-def test_an_imu_says_how_noisy_its_plugin_makes_it():
+def test_the_covariances_of_an_imu_follow_from_its_noise():
     imu = """<gazebo><plugin name="i" filename="libgazebo_ros_imu.so"><bodyName>chassis</bodyName>
     <topicName>imu/data</topicName><updateRate>50</updateRate><gaussianNoise>0.1</gaussianNoise></plugin></gazebo>"""
     (read,) = read_urdf_robot(urdf(DRIVE.format(more="") + imu), "mine.urdf").sensors_of(ImuProfile)
@@ -133,7 +133,7 @@ def test_an_imu_says_how_noisy_its_plugin_makes_it():
     assert read.angular_velocity_variances == read.orientation_variances == pytest.approx((0.01, 0.01, 0.01))
 
 
-def test_an_unknown_plugin_is_named_once():
+def test_an_unknown_plugin_gives_one_warning():
     unknown = "<gazebo><plugin name='{}' filename='libgazebo_ros_control.so'/></gazebo>"
     text = urdf(DRIVE.format(more="") + unknown.format(1) + unknown.format(2))
     assert read_urdf_robot(text, "mine.urdf").warnings == (
@@ -160,7 +160,7 @@ def test_a_xacro_file_becomes_a_robot_and_a_broken_one_an_error(tmp_path):
         robot_named(str(path))
 
 
-def test_a_mesh_that_is_not_there_is_named_and_left_out():
+def test_a_missing_mesh_is_ignored_with_a_warning():
     text = urdf(DRIVE.format(more="")).replace(
         '<box size="0.4 0.3 0.1"/>', "<mesh filename='package://nowhere/a.stl'/>"
     )
@@ -168,7 +168,7 @@ def test_a_mesh_that_is_not_there_is_named_and_left_out():
     assert robot.warnings[0].endswith("package://nowhere/a.stl not found, ignored")
 
 
-def test_what_gazebo_does_without_is_named_and_the_robot_drives():
+def test_what_gazebo_ignores_gives_a_warning_and_the_robot_drives():
     sensor = '<sensor type="camera" name="eye"><plugin name="c" filename="libgazebo_ros_camera.so"/></sensor>'
     imu = '<plugin name="imu" filename="libgazebo_ros_imu.so"><bodyName>tail</bodyName></plugin>'
     parts = f'<gazebo reference="head">{sensor}</gazebo><gazebo>{imu}</gazebo>'
@@ -183,12 +183,12 @@ def test_what_gazebo_does_without_is_named_and_the_robot_drives():
         assert any(named in warning for warning in robot.warnings), named
 
 
-def test_numbers_may_stand_between_commas_as_kinetics_urdfdom_takes_them():
+def test_numbers_may_be_separated_by_commas_as_in_kinetics_urdfdom():
     text = urdf(DRIVE.format(more="")).replace('"0.4 0.3 0.1"', '"0.4, 0.3, 0.1"')
     assert read_urdf_robot(text, "mine.urdf").model.base.collisions[0].shape.size == (0.4, 0.3, 0.1)
 
 
-def test_a_lens_wider_than_a_flat_picture_sees_what_that_can_hold():
+def test_the_field_of_view_of_a_camera_is_limited():
     eye = LASER.format(roll=0).split("<gazebo")[0]
     camera = """<gazebo reference="eye"><sensor type="camera" name="c">
     <camera><horizontal_fov>3.183</horizontal_fov></camera>
@@ -197,14 +197,14 @@ def test_a_lens_wider_than_a_flat_picture_sees_what_that_can_hold():
     assert found.settings.horizontal_fov == 3.0
 
 
-def test_a_fixed_joint_needs_no_axis_and_a_shape_no_thickness():
+def test_a_fixed_joint_needs_no_axis_and_a_box_may_have_no_thickness():
     text = urdf(DRIVE.format(more="")).replace('"0.4 0.3 0.1"', '"0.4 0 0.1"')
     held = text.replace('name="swivel" type="continuous"', 'name="swivel" type="fixed"')
     robot = read_urdf_robot(held.replace('xyz="0 0 1"', 'xyz="0 0 0"'), "mine.urdf")
     assert robot.model.base.collisions[0].shape.size == pytest.approx((0.4, 1e-4, 0.1))
 
 
-def test_of_two_drives_the_one_whose_wheels_are_not_there_is_left_out():
+def test_of_two_drives_the_one_with_missing_wheels_is_ignored():
     broken = DRIVE.format(more="").replace(">left_hinge", ">hinge")
     for drives in (DRIVE.format(more="") + broken, broken + DRIVE.format(more="")):
         robot = read_urdf_robot(urdf(drives), "mine.urdf")
@@ -225,7 +225,7 @@ def test_of_two_drives_the_one_whose_wheels_are_not_there_is_left_out():
         (urdf(DRIVE.format(more="").replace(">0.2<", ">-1<")), "wheelDiameter: must be positive"),
     ],
 )
-def test_a_description_that_is_no_robot_is_refused(text, named):
+def test_a_description_that_is_not_valid_is_refused(text, named):
     with pytest.raises(RobotError, match=named):
         read_urdf_robot(text, "mine.urdf")
 
@@ -269,7 +269,7 @@ def test_a_robot_without_a_laser_scans_with_its_depth_camera(tmp_path):
     assert scanner.pose_in_base[2, 3] == pytest.approx(0.3)
 
 
-def test_a_robot_that_is_part_of_a_world_is_a_robot(tmp_path):
+def test_a_driven_model_of_a_world_is_read_as_a_robot(tmp_path):
     path = tmp_path / "rover.world"
     path.write_text(SDF_ROBOT)
     world = load_world(path)
@@ -289,12 +289,12 @@ def test_a_robot_that_is_part_of_a_world_is_a_robot(tmp_path):
 @pytest.mark.parametrize(
     "name", ["~nobody_of_that_name/x.urdf", "a\0b.urdf", "a" * 300 + ".urdf", "a" * 300 + ".xacro"]
 )
-def test_what_no_file_can_be_called_is_refused(name):
+def test_a_path_that_is_not_valid_is_refused(name):
     with pytest.raises(RobotError, match="cannot be read"):
         robot_named(name)
 
 
-def test_a_pipe_is_no_description(tmp_path):
+def test_a_named_pipe_is_refused_as_a_description(tmp_path):
     path = tmp_path / "robot.xacro"
     os.mkfifo(path)
     with pytest.raises(RobotError, match="cannot be read"):

@@ -1,4 +1,4 @@
-"""Doors shut and open at their times, wait for robots, open to people, alike from the same start."""
+"""Doors close and open on schedule, wait for robots and open for pedestrians, deterministically."""
 
 import numpy as np
 import pytest
@@ -27,7 +27,7 @@ def simulated(*doors, start=LEFT, walkers=()):
 
 
 def ahead(simulation, until, command=None):
-    """Stamps, and how far the laser sees straight ahead."""
+    """Return stamps and the range of the laser straight ahead."""
     seen = []
     while not seen or seen[-1][0] < until:
         observation = simulation.step(command)
@@ -37,16 +37,16 @@ def ahead(simulation, until, command=None):
     return np.array(seen)
 
 
-def test_a_door_is_seen_while_it_is_shut():
+def test_a_closed_door_is_scanned():
     seen = ahead(simulated(Door("door", DOORWAY, 1.0, 1.0, 2.0)), 3.0)
-    is_shut = (seen[:, 0] > 1.2) & (seen[:, 0] < 2.0)
+    is_closed = (seen[:, 0] > 1.2) & (seen[:, 0] < 2.0)
     is_open = (seen[:, 0] < 1.0) | (seen[:, 0] > 2.2)
-    assert is_shut.sum() > 3 and is_open.sum() > 5
-    assert (np.abs(seen[is_shut, 1] - 2.0) < 0.3).all()
+    assert is_closed.sum() > 3 and is_open.sum() > 5
+    assert (np.abs(seen[is_closed, 1] - 2.0) < 0.3).all()
     assert (seen[is_open, 1] > 5.0).all()
 
 
-def test_a_door_that_is_shut_from_the_start_opens():
+def test_a_door_that_is_closed_at_the_start_opens():
     seen = ahead(simulated(Door("door", DOORWAY, 1.0, end=1.0)), 2.0)
     assert seen[0, 1] < 2.3 and seen[-1, 1] > 5.0
 
@@ -61,7 +61,7 @@ def test_a_door_is_solid_and_not_on_the_map():
     assert grid.cells[row, col] == 0
 
 
-def test_a_door_does_not_shut_upon_a_robot():
+def test_a_door_does_not_close_on_a_robot():
     simulation = simulated(Door("door", DOORWAY, 1.0, 1.0), start=DOORWAY)
     assert all(simulation.step().contacts == () for _ in range(100))
     drives = [simulation.step(Twist2(0.5, 0.0)).contacts for _ in range(200)]
@@ -70,20 +70,20 @@ def test_a_door_does_not_shut_upon_a_robot():
     assert backwards[:, 1].min() < 2.5 and len(backwards) > 10
 
 
-def test_people_open_a_door_that_is_shut():
+def test_a_closed_door_opens_for_pedestrians():
     anna = Walker("anna", np.array([(-3.0, 1.0), (3.0, 1.0)]), speed=1.0)
     simulation = simulated(Door("door", DOORWAY, 1.0), start=Pose2(-1.6, -1.0), walkers=(anna,))
-    was_shut, at_door = [], []
+    was_closed, at_door = [], []
     for _ in range(400):
         simulation.step()
         x, y = simulation.scene.crowd.rows[0, :2]
-        is_shut = simulation.scene.models.link_state("door::link").pose[0, 3] == 0.0
-        (at_door if abs(x) < 0.5 else was_shut).append(is_shut)
-    assert at_door and not any(at_door), "she goes through it while it is open"
-    assert was_shut[0] and was_shut[-1], "it shuts behind her"
+        is_closed = simulation.scene.models.link_state("door::link").pose[0, 3] == 0.0
+        (at_door if abs(x) < 0.5 else was_closed).append(is_closed)
+    assert at_door and not any(at_door), "the pedestrian passes it while it is open"
+    assert was_closed[0] and was_closed[-1], "it closes afterwards"
 
 
-def test_after_a_rewind_doors_do_the_same():
+def test_doors_repeat_their_schedule_after_a_rewind():
     simulation = simulated(Door("door", DOORWAY, 1.0, 0.5, 1.5))
     simulation.mark()
     runs = []
@@ -94,6 +94,6 @@ def test_after_a_rewind_doors_do_the_same():
 
 
 @pytest.mark.parametrize("wrong", [{"width": 0.0}, {"start": 2.0, "end": 1.0}, {"pose": Pose2(np.nan, 0.0)}])
-def test_a_door_that_is_none_is_an_error(wrong):
-    with pytest.raises(WorldError, match="door: a door needs a place"):
+def test_values_of_a_door_that_are_not_valid_are_errors(wrong):
+    with pytest.raises(WorldError, match="door: a door needs a valid pose"):
         Door("door", **{"pose": DOORWAY, "width": 1.0, **wrong})

@@ -1,4 +1,4 @@
-"""Mesh files and the cache of converted ones."""
+"""Mesh files and the cache of converted meshes."""
 
 import numpy as np
 import pytest
@@ -52,14 +52,14 @@ def test_a_converted_mesh_is_taken_from_the_cache_until_its_file_changes(tmp_pat
     monkeypatch.setattr("sim_bridge.geometry.meshes._convert", lambda file: pytest.fail("converted again"))
     again = load_mesh(MeshFile(path, (2.0, 2.0, 2.0)), cache)
     assert np.array_equal(first.vertices, again.vertices)
-    assert load_mesh(MeshFile(path), cache).vertices.max() == 1.0, "the scale is no part of what is cached"
+    assert load_mesh(MeshFile(path), cache).vertices.max() == 1.0, "the scale is not cached"
     monkeypatch.undo()
     path.write_text(TETRAHEDRON.replace("v 1 0 0", "v 3 0 0"))
     assert load_mesh(MeshFile(path), cache).vertices.max() == 3.0
 
 
 @pytest.mark.parametrize("content", [b"", b"not a zip file", b"PK\x03\x04 cut off"])
-def test_a_damaged_cache_is_made_anew(tmp_path, cache, content):
+def test_a_damaged_cache_file_is_replaced(tmp_path, cache, content):
     path = tmp_path / "a.obj"
     path.write_text(TETRAHEDRON)
     load_mesh(MeshFile(path), cache)
@@ -86,7 +86,7 @@ def test_a_part_of_an_obj_file_is_found_by_its_name(tmp_path, cache, keyword):
 
 
 @pytest.mark.parametrize(("name", "content"), [("a.obj", ""), ("a.dae", "<COLLADA"), ("a.xyz", "?")])
-def test_what_holds_no_mesh_is_an_error_that_names_it(tmp_path, cache, name, content):
+def test_a_file_without_a_mesh_is_an_error_that_names_it(tmp_path, cache, name, content):
     (tmp_path / name).write_text(content)
     with pytest.raises(WorldError, match=name):
         load_mesh(MeshFile(tmp_path / name), cache)

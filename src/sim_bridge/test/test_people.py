@@ -1,4 +1,4 @@
-"""People walk to their goals round walls, each other and robots, alike from the same start."""
+"""Pedestrians walk to their goals around walls, each other and robots, deterministically."""
 
 import numpy as np
 import pytest
@@ -27,7 +27,7 @@ def hall(*walkers, solids=HALL):
 
 
 def walked(simulation, seconds, command=None):
-    """Rows of all people, and the contacts, at each step."""
+    """Return the states of all pedestrians at each step, and the contacts."""
     rows, contacts = [], []
     for _ in range(round(seconds / simulation.step_seconds)):
         contacts += simulation.step(command).contacts
@@ -39,7 +39,7 @@ def person(name, *goals, **others):
     return Walker(name, np.array(goals, dtype=float), **others)
 
 
-def test_one_walks_through_the_door_at_ones_own_speed():
+def test_a_pedestrian_walks_through_a_door_at_its_preferred_speed():
     anna = person("anna", (-2.0, 1.5), (2.0, 1.5), speed=1.2)
     rows, _ = walked(Simulation(hall(anna, solids=HALL + WALL), base_in_world=Pose2(3.0, -2.0)), 8.0)
     places = rows[:, 0, :2]
@@ -52,7 +52,7 @@ def test_one_walks_through_the_door_at_ones_own_speed():
 
 @pytest.mark.parametrize("speed", [0.7, 1.4])
 @pytest.mark.parametrize("width", [0.6, 0.9])
-def test_slow_and_fast_pass_narrow_doors(width, speed):
+def test_slow_and_fast_pedestrians_pass_narrow_doors(width, speed):
     sides = (
         box_on_floor("left", (0.2, 3.0 - width / 2, 1.0), Pose2(0.0, 1.5 + width / 4)),
         box_on_floor("right", (0.2, 3.0 - width / 2, 1.0), Pose2(0.0, -1.5 - width / 4)),
@@ -63,7 +63,7 @@ def test_slow_and_fast_pass_narrow_doors(width, speed):
     assert not contacts
 
 
-def test_who_does_not_get_on_turns_back_however_much_they_sway():
+def test_a_pedestrian_without_progress_goes_to_its_next_goal():
     # A robot stands in the door.
     anna = person("anna", (-2.0, -1.2), (2.0, -1.2), speed=1.4)
     rows, _ = walked(Simulation(hall(anna, solids=HALL + WALL), base_in_world=Pose2(0.0, -1.2)), 20.0)
@@ -72,7 +72,7 @@ def test_who_does_not_get_on_turns_back_however_much_they_sway():
     assert at_door.any() and longest < 8.0
 
 
-def test_two_who_meet_give_way():
+def test_two_pedestrians_that_meet_avoid_each_other():
     pair = person("anna", (-3.0, 0.0), (3.0, 0.0)), person("bert", (3.0, 0.0), (-3.0, 0.0))
     rows, _ = walked(Simulation(hall(*pair), base_in_world=Pose2(0.0, -2.5)), 6.0)
     apart = np.hypot(*(rows[:, 0, :2] - rows[:, 1, :2]).T)
@@ -80,7 +80,7 @@ def test_two_who_meet_give_way():
     assert rows[-1, 0, 0] > 1.5 and rows[-1, 1, 0] < -1.5
 
 
-def test_who_walks_towards_a_robot_that_stands_goes_round_it():
+def test_a_pedestrian_walks_around_a_robot_at_rest():
     anna = person("anna", (-2.0, 0.02), (2.0, 0.02))
     rows, contacts = walked(Simulation(hall(anna)), 6.0)
     assert contacts == []
@@ -88,20 +88,20 @@ def test_who_walks_towards_a_robot_that_stands_goes_round_it():
     assert np.hypot(*rows[:, 0, :2].T).min() > 0.38
 
 
-def test_who_stands_steps_aside_and_comes_back():
+def test_a_standing_pedestrian_steps_aside_for_a_robot():
     dora = person("dora", (1.0, 0.15))
     rows, _ = walked(Simulation(hall(dora)), 6.0, Twist2(0.2, 0.0))
     assert np.abs(rows[:, 0, :2] - (1.0, 0.15)).max() > 0.1
 
 
-def test_who_belongs_together_stays_together():
+def test_a_group_stays_together():
     trio = [person(f"kid_{n}", (-3.0, n - 1.0), (3.0, 0.0), group=1) for n in range(3)]
     rows, _ = walked(Simulation(hall(*trio), base_in_world=Pose2(0.0, -2.5)), 5.0)
     middle = rows[:, :, :2].mean(axis=1, keepdims=True)
     assert np.hypot(*(rows[:, :, :2] - middle).T).max() < 1.3
 
 
-def test_people_are_seen_and_after_a_rewind_walk_alike():
+def test_pedestrians_are_scanned_and_repeat_their_walk_after_a_rewind():
     simulation = Simulation(hall(person("anna", (1.0, 0.0), (-1.0, 2.0))))
     simulation.mark()
     seen = []
@@ -116,7 +116,7 @@ def test_people_are_seen_and_after_a_rewind_walk_alike():
 
 
 @pytest.mark.parametrize("goals", [[], [(np.nan, 0.0)]])
-def test_a_person_without_goals_is_an_error(goals):
+def test_a_pedestrian_without_goals_is_an_error(goals):
     with pytest.raises(WorldError, match="anna: a person needs goals"):
         person("anna", *goals)
 

@@ -1,4 +1,4 @@
-"""Models are told, set, pushed and reset; several robots share a scene."""
+"""A scene: states of models are read and set, wrenches applied, poses reset; several robots share it."""
 
 import math
 
@@ -41,10 +41,10 @@ def scene():
 
 
 def drive(scene, seconds, commands={}):
-    """Gives the commands at every step; returns the last observations."""
+    """Give the commands at every step; return the last results."""
     for _ in range(round(seconds / scene.step_seconds)):
-        seen = scene.step(commands)
-    return seen
+        results = scene.step(commands)
+    return results
 
 
 def test_a_models_pose_is_that_of_its_frame_not_of_its_first_link(scene):
@@ -66,21 +66,21 @@ def test_a_model_in_motion_keeps_moving(scene):
 
 @pytest.mark.parametrize("mass", [0.0, -1.0, np.nan, np.inf, 1e300])
 @pytest.mark.parametrize("moment", [1.0, np.inf])
-def test_what_nothing_can_weigh_is_refused(scene, mass, moment):
+def test_a_mass_or_moment_that_is_not_positive_and_finite_is_refused(scene, mass, moment):
     with pytest.raises(WorldError, match="must be positive"):
         scene.models.set_mass("crate::link", mass, (1.0, 1.0, moment), has_gravity=True)
     drive(scene, 0.1)
     assert np.isfinite(scene.models.state("crate").pose).all()
 
 
-def test_bodies_of_one_name_are_refused_and_leave_nothing(scene):
+def test_two_bodies_with_the_same_name_are_refused_and_neither_is_added(scene):
     with pytest.raises(WorldError, match="2 times"):
-        scene.add([box("twin", 8.0), box("twin", 9.0)])
-    assert "twin" not in scene.models.names()
+        scene.add([box("pair", 8.0), box("pair", 9.0)])
+    assert "pair" not in scene.models.names()
 
 
 def chain_of(count):
-    """Bodies and joints of a post ahead, and of so many links above it, each on a hinge on the one before."""
+    """Return bodies and joints of a post ahead of the robot, and of a chain of hinged links above it."""
     ends = "<parent>l{}</parent><child>l{}</child><axis><xyz>0 0 1</xyz></axis>"
     ball = "<geometry><sphere><radius>0.2</radius></sphere></geometry>"
     solid = f"<inertial><mass>1</mass></inertial><collision name='c'>{ball}</collision>"
@@ -92,8 +92,8 @@ def chain_of(count):
     return model.bodies, model.joints
 
 
-def test_what_is_too_much_for_the_engine_is_refused_and_leaves_nothing(scene):
-    """Of the two things that hang together in this model only the second is too large."""
+def test_a_multibody_with_too_many_parts_is_refused_and_nothing_is_added(scene):
+    """Of the two multibodies of this model only the second is too large."""
     scene.add_robot("one", LIDAR)
     with pytest.raises(
         WorldError, match="chain::l0: 129 parts are connected by joints, at most 128 are supported"
@@ -119,7 +119,7 @@ def test_gravity_can_be_switched_off(scene):
     assert scene.models.state("crate").pose[2, 3] == pytest.approx(2.0)
 
 
-def test_a_still_model_that_is_put_elsewhere_is_seen_there(scene):
+def test_a_static_model_that_is_moved_is_scanned_at_its_new_pose(scene):
     scene.add_robot("r", LIDAR)
     scene.set_model_state("wall", at_rest(pose3(2.0, 0.0, 0.25)))
     assert drive(scene, 0.1)["r"].scan.ranges[180] == pytest.approx(1.75, abs=1e-3)
@@ -129,13 +129,13 @@ def test_a_still_model_that_is_put_elsewhere_is_seen_there(scene):
         scene.models.state("wall")
 
 
-def test_a_still_model_that_is_put_elsewhere_before_anyone_looked_is_drawn_there(scene):
+def test_a_static_model_that_is_moved_before_the_first_image_is_rendered_at_its_new_pose(scene):
     scene.set_model_state("wall", at_rest(pose3(2.0, 0.0, 0.25)))
     triangles, _ = scene.view.triangles()
     assert triangles[..., 0][triangles[..., 2] > 0.4].min() == pytest.approx(1.75)
 
 
-def test_a_model_may_go_while_it_is_pushed(scene):
+def test_a_model_may_be_removed_while_a_wrench_acts_on_it(scene):
     scene.forces.apply_link_wrench(
         LinkWrench("crate::link", np.array([4.0, 0.0, 0.0]), np.zeros(3), 0.0, math.inf)
     )
@@ -144,7 +144,7 @@ def test_a_model_may_go_while_it_is_pushed(scene):
     assert "crate" not in scene.models.names()
 
 
-def test_names_that_are_not_there_are_refused_with_the_nearest(scene):
+def test_unknown_names_are_refused_with_the_nearest_one(scene):
     with pytest.raises(UnknownEntityError, match="no model named 'crat', did you mean crate"):
         scene.remove_model("crat")
     with pytest.raises(UnknownEntityError, match="did you mean crate::link"):
@@ -153,7 +153,7 @@ def test_names_that_are_not_there_are_refused_with_the_nearest(scene):
         scene.step({"r": Twist2()})
 
 
-def test_a_push_lasts_as_long_as_asked_and_can_be_stopped(scene):
+def test_a_wrench_acts_for_the_given_time_and_can_be_cleared(scene):
     scene.set_gravity(0.0)
     scene.set_model_state("crate", at_rest(pose3(0.0, -3.0, 2.0)))
     scene.forces.apply_link_wrench(
@@ -169,7 +169,7 @@ def test_a_push_lasts_as_long_as_asked_and_can_be_stopped(scene):
     assert scene.models.state("crate").linear[0] == pytest.approx(1.0, rel=0.1)
 
 
-def test_robots_see_and_do_not_pass_through_each_other(scene):
+def test_robots_scan_each_other_and_collide(scene):
     scene.add_robot("one", LIDAR, Pose2(-1.0, 0.0, 0.0))
     scene.add_robot("two", LIDAR, Pose2(1.0, 0.0, math.pi))
     seen = drive(scene, 0.1)
@@ -179,7 +179,7 @@ def test_robots_see_and_do_not_pass_through_each_other(scene):
     assert seen["one"].base_in_world.distance_to(seen["two"].base_in_world) > 2 * 0.178 - 0.01
 
 
-def test_two_robots_are_driven_apart(scene):
+def test_two_robots_follow_separate_commands(scene):
     scene.add_robot("one", LIDAR, Pose2(0.0, 0.0))
     scene.add_robot("two", LIDAR, Pose2(0.0, 1.0))
     seen = drive(scene, 3.0, {"one": Twist2(0.3, 0.0), "two": Twist2(-0.3, 0.0)})
@@ -187,7 +187,7 @@ def test_two_robots_are_driven_apart(scene):
     assert seen["two"].base_in_world.x < -0.7
 
 
-def test_a_robot_must_have_room_and_a_name_of_its_own(scene):
+def test_a_robot_needs_free_space_and_a_unique_name(scene):
     scene.add_robot("one", LIDAR)
     with pytest.raises(WorldError, match="one is in the world already"):
         scene.add_robot("one", LIDAR, Pose2(1.0, 0.0))
@@ -197,7 +197,7 @@ def test_a_robot_must_have_room_and_a_name_of_its_own(scene):
     assert drive(scene, 0.5)["one"].contacts == (), "nothing of it is left in the engine either"
 
 
-def test_resetting_poses_puts_all_back_and_time_goes_on(scene):
+def test_resetting_poses_restores_the_start_poses_and_time_continues(scene):
     scene.add_robot("r", LIDAR, Pose2(1.0, 0.0))
     scene.set_model_state("crate", at_rest(pose3(0.0, -3.0, 0.25)))
     before = drive(scene, 2.0, {"r": Twist2(0.4, 0.0)})["r"]
@@ -226,14 +226,14 @@ def trace(scene, command=Twist2(0.3, 0.4)):
     return seen
 
 
-def test_a_reset_scene_repeats_itself_bit_for_bit():
+def test_a_reset_scene_repeats_its_run_bit_for_bit():
     scene = walled(seed=3)
     first = trace(scene)
     scene.reset()
     assert trace(scene) == first
 
 
-def test_a_scene_rewinds_to_its_mark_whatever_has_happened_since():
+def test_rewind_restores_the_marked_state_whatever_has_happened_since():
     scene, fresh, start = walled(seed=3), walled(seed=8), {"r": Pose2(0.1, -0.2, 0.3)}
     for one in (scene, fresh):
         one.mark()
@@ -247,7 +247,7 @@ def test_a_scene_rewinds_to_its_mark_whatever_has_happened_since():
     assert runs[0][0][1].distance_to(start["r"]) < 0.01
 
 
-def test_the_rate_of_physics_can_be_changed_and_time_goes_on(scene):
+def test_the_physics_rate_can_be_changed_and_time_continues(scene):
     drive(scene, 0.5)
     scene.set_physics_rate(1000)
     drive(scene, 0.5)
@@ -257,7 +257,7 @@ def test_the_rate_of_physics_can_be_changed_and_time_goes_on(scene):
 
 
 @pytest.mark.parametrize("pair", [("wall::link", "crate::link"), ("crate::link", "wall::link")])
-def test_what_stands_holds_what_is_attached_to_it_and_takes_it_along(scene, pair):
+def test_a_static_body_holds_and_moves_what_is_attached_to_it(scene, pair):
     scene.set_model_state("crate", at_rest(pose3(5.0, 1.0, 1.5)))
     scene.attach(*pair)
     drive(scene, 1.0)
@@ -271,7 +271,7 @@ def test_what_stands_holds_what_is_attached_to_it_and_takes_it_along(scene, pair
     assert scene.models.state("wall").pose == pytest.approx(pose3(6.0, 0.0, 0.25))
 
 
-def test_what_stands_can_be_attached_to_what_stands_and_let_go(scene):
+def test_two_static_bodies_can_be_attached_and_detached(scene):
     scene.attach("wall::link", "floor::link")
     drive(scene, 0.1)
     scene.detach("wall::link", "floor::link")
@@ -279,18 +279,18 @@ def test_what_stands_can_be_attached_to_what_stands_and_let_go(scene):
 
 
 @pytest.mark.parametrize("has_gravity", [True, False])
-def test_what_stands_stays_whatever_it_weighs_and_however_it_is_to_move(scene, has_gravity):
+def test_a_static_body_stays_whatever_mass_and_velocity_are_set(scene, has_gravity):
     up = pose3(5.0, 0.0, 1.25)
     scene.models.set_mass("wall::link", 3.0, (0.1, 0.2, 0.3), has_gravity)
     scene.set_model_state("wall", KinematicState(up, np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])))
     drive(scene, 1.0)
     assert scene.models.state("wall").pose == pytest.approx(up)
     assert not scene.models.state("wall").linear.any()
-    told = scene.models.mass_properties("wall::link")
-    assert (told.mass, *told.moments, told.has_gravity) == (3.0, 0.1, 0.2, 0.3, has_gravity)
+    properties = scene.models.mass_properties("wall::link")
+    assert (properties.mass, *properties.moments, properties.has_gravity) == (3.0, 0.1, 0.2, 0.3, has_gravity)
 
 
-def test_what_is_attached_to_a_robot_goes_with_it_until_it_is_let_go(scene):
+def test_a_body_attached_to_a_robot_moves_with_it_until_it_is_detached(scene):
     scene.add_robot("robot", LIDAR)
     scene.add([box("parcel", 0.0, mass=0.2)])
     scene.set_model_state("parcel", at_rest(pose3(z=0.7)))

@@ -1,4 +1,4 @@
-"""A scene of robots, models, people, doors and faults, ordered about in any order."""
+"""Random sequences of operations on a scene with robots, models, pedestrians, doors and faults."""
 
 import math
 
@@ -63,7 +63,7 @@ COMMANDS = (
 
 
 class SceneHistories(RuleBasedStateMachine):
-    """What the node does with a Scene; ``models``: names of what there ought to be, ``robots`` of it."""
+    """The operations of the ROS node on a Scene; ``models`` and ``robots`` are the expected names."""
 
     @initialize()
     def begin(self):
@@ -88,7 +88,7 @@ class SceneHistories(RuleBasedStateMachine):
             for robot, observation in list(seen.items())[:1]:
                 stage = FaultContext(self.scene, robot, observation.base_in_world)
                 self.faults.update(self.scene.stamp, stage)
-            # Faults put things in the way, and take them out of it.
+            # Faults add and remove obstacles.
             in_way = {model for model in self.scene.models.names() if model.startswith("fault_")}
             self.models = {model for model in self.models if not model.startswith("fault_")} | in_way
 
@@ -101,7 +101,7 @@ class SceneHistories(RuleBasedStateMachine):
         assert observation.odometry.base_in_odom.is_finite()
 
     @rule(name=st.sampled_from(NAMES), place=st.sampled_from(PLACES), mass=st.sampled_from((None, 1e-3, 5.0)))
-    def a_box_comes(self, name, place, mass):
+    def a_box_is_added(self, name, place, mass):
         try:
             self.scene.add([box_on_floor(name, (0.3, 0.3, 0.3), place, mass)])
         except WorldError:
@@ -115,7 +115,7 @@ class SceneHistories(RuleBasedStateMachine):
         profile=st.sampled_from(PROFILES),
         place=st.sampled_from(PLACES),
     )
-    def a_robot_comes(self, name, profile, place):
+    def a_robot_is_added(self, name, profile, place):
         try:
             self.scene.add_robot(name, ROBOTS[profile], place)
         except WorldError:
@@ -135,7 +135,7 @@ class SceneHistories(RuleBasedStateMachine):
             self.robots.discard(name)
 
     @rule(name=st.sampled_from(NAMES), place=st.sampled_from(PLACES), z=st.sampled_from((0.3, 2.0, -5.0)))
-    def a_model_is_put_elsewhere(self, name, place, z):
+    def a_model_is_moved(self, name, place, z):
         try:
             self.scene.set_model_state(name, at_rest(pose3(place.x, place.y, z, yaw=place.yaw)))
         except WorldError:
@@ -143,22 +143,22 @@ class SceneHistories(RuleBasedStateMachine):
         else:
             assert self.scene.models.state(name).pose2.distance_to(place) < 1e-3 * max(1.0, place.x)
 
-    @rule(first=st.sampled_from(NAMES), second=st.sampled_from(NAMES), lets_go=st.booleans())
-    def links_are_attached_or_let_go(self, first, second, lets_go):
+    @rule(first=st.sampled_from(NAMES), second=st.sampled_from(NAMES), detach=st.booleans())
+    def links_are_attached_or_detached(self, first, second, detach):
         links = [
             self.scene.models.links_of(name)[0] if name in self.models else name for name in (first, second)
         ]
         try:
-            (self.scene.detach if lets_go else self.scene.attach)(*links)
+            (self.scene.detach if detach else self.scene.attach)(*links)
         except WorldError:
-            assert lets_go or not {first, second} <= self.models or first == second
+            assert detach or not {first, second} <= self.models or first == second
 
     @rule(
         name=st.sampled_from(NAMES),
         force=st.sampled_from((20.0, -300.0)),
         seconds=st.sampled_from((0.1, math.inf)),
     )
-    def something_is_pushed(self, name, force, seconds):
+    def a_wrench_is_applied(self, name, force, seconds):
         link = self.scene.models.links_of(name)[0] if name in self.models else name
         start = self.scene.stamp
         try:
@@ -169,19 +169,19 @@ class SceneHistories(RuleBasedStateMachine):
             assert name not in self.models
 
     @rule(mass=st.sampled_from((3.0, 1e-6, 0.0, -1.0, math.nan, math.inf)))
-    def the_crate_is_of_another_mass(self, mass):
+    def the_mass_of_the_crate_is_set(self, mass):
         try:
             self.scene.models.set_mass("crate::link", mass, (0.1, 0.1, 0.1), has_gravity=True)
         except WorldError:
             assert "crate" not in self.models or not 1e-6 <= mass < math.inf
 
     @rule(kind=st.sampled_from((*sorted(KINDS), *(4 * OF_HOME))), seconds=st.sampled_from((0.2, math.inf)))
-    def a_fault_comes(self, kind, seconds):
+    def a_fault_is_added(self, kind, seconds):
         now = self.scene.stamp
         self.faults.add(Fault(kind, now, now + seconds, default_strength(kind)))
 
     @rule(rate=st.sampled_from((50, 200, 1000, 30, 0)))
-    def physics_get_another_rate(self, rate):
+    def the_physics_rate_is_set(self, rate):
         before = self.scene.settings
         try:
             self.scene.set_physics_rate(rate)
@@ -190,17 +190,17 @@ class SceneHistories(RuleBasedStateMachine):
             assert self.scene.settings == before
 
     @rule(gravity=st.sampled_from((9.8, 0.0, -2.0, 1e3)))
-    def gravity_changes(self, gravity):
+    def gravity_is_set(self, gravity):
         self.scene.set_gravity(gravity)
 
     @rule()
-    def the_world_is_reset(self):
+    def poses_are_reset(self):
         stamp = self.scene.stamp
         self.scene.reset_poses()
         assert self.scene.stamp == stamp
 
     @rule()
-    def all_is_reset(self):
+    def the_scene_is_reset(self):
         self.scene.reset()
         assert self.scene.stamp == 0.0
 
@@ -211,27 +211,27 @@ class SceneHistories(RuleBasedStateMachine):
             self.scene.robot(name).reset_odometry()
 
     @invariant()
-    def there_is_what_there_ought_to_be(self):
+    def all_expected_models_exist(self):
         assert set(self.scene.models.names()) == self.models
 
     @invariant()
-    def all_is_somewhere(self):
+    def all_states_are_finite(self):
         for name in self.models:
-            motion = self.scene.models.state(name)
-            assert np.isfinite(motion.pose).all(), name
-            assert np.isfinite(motion.linear).all(), name
-            assert np.isfinite(motion.angular).all(), name
+            state = self.scene.models.state(name)
+            assert np.isfinite(state.pose).all(), name
+            assert np.isfinite(state.linear).all(), name
+            assert np.isfinite(state.angular).all(), name
 
     def teardown(self):
-        """Whatever was, time goes on, also from the start, and there is an end to it."""
+        """Whatever was done, the scene can be stepped, reset and closed."""
         if not hasattr(self, "scene"):
             return
         try:
             self.time_passes(2, "robot", COMMANDS[0])
-            self.all_is_reset()
+            self.the_scene_is_reset()
             self.time_passes(2, "robot", COMMANDS[0])
-            self.there_is_what_there_ought_to_be()
-            self.all_is_somewhere()
+            self.all_expected_models_exist()
+            self.all_states_are_finite()
         finally:
             self.scene.close()
 

@@ -1,4 +1,4 @@
-"""Bodies that go their own way are seen where they are, felt when they touch, and start again."""
+"""Bodies on scripted trajectories are scanned at their positions, collide, and restart after a rewind."""
 
 import numpy as np
 import pytest
@@ -30,15 +30,15 @@ def run(simulation, seconds):
     return [simulation.step() for _ in range(round(seconds / simulation.step_seconds))]
 
 
-def test_a_scan_sees_the_body_where_its_course_has_it():
+def test_a_scan_measures_the_body_at_its_position_on_the_trajectory():
     seen = [one for one in run(Simulation(world(), settings=EXACT), 7.9) if one.scan is not None]
-    places = [float(np.interp(one.stamp % 4.0, TIMES, POINTS[:, 0])) for one in seen]
-    gaps = [x - straight_ahead(one) for x, one in zip(places, seen)]
-    assert np.ptp(places) > 1.9
-    assert np.ptp(gaps) < 0.041, "a step of a course either way"
+    positions = [float(np.interp(one.stamp % 4.0, TIMES, POINTS[:, 0])) for one in seen]
+    gaps = [x - straight_ahead(one) for x, one in zip(positions, seen)]
+    assert np.ptp(positions) > 1.9
+    assert np.ptp(gaps) < 0.041, "one update of the trajectory either way"
 
 
-def test_it_stops_for_nobody_and_what_it_touches_is_told():
+def test_a_body_does_not_stop_for_a_robot_and_the_contact_is_reported():
     simulation = Simulation(world(POINTS - (1.0, 0.0)), settings=EXACT)
     seen = run(simulation, 2.0)
     assert any("walker::link" in one.contacts for one in seen)
@@ -46,7 +46,7 @@ def test_it_stops_for_nobody_and_what_it_touches_is_told():
     assert simulation.scene.models.state("walker").pose[0, 3] == pytest.approx(0.0, abs=0.05)
 
 
-def test_after_a_rewind_it_goes_the_same_way():
+def test_a_body_repeats_its_trajectory_after_a_rewind():
     simulation = Simulation(world(), settings=EXACT)
     simulation.mark()
     scans = []
@@ -56,12 +56,12 @@ def test_after_a_rewind_it_goes_the_same_way():
     assert scans[0][: len(scans[1])] == scans[1] == scans[2]
 
 
-def test_the_world_goes_on_when_one_has_been_taken_away():
+def test_the_simulation_continues_after_a_body_was_removed():
     simulation = Simulation(world(), settings=EXACT)
     simulation.scene.remove_model("walker")
     assert simulation.step().stamp == simulation.step_seconds
 
 
-def test_times_that_do_not_rise_are_no_course():
-    with pytest.raises(WorldError, match="walker::link: a course needs times that rise"):
+def test_times_that_do_not_increase_are_an_error():
+    with pytest.raises(WorldError, match="walker::link: a trajectory needs increasing times"):
         ScriptedTrajectory("walker::link", np.array([0.0, 2.0, 2.0]), POINTS)

@@ -1,4 +1,4 @@
-"""The rules of SDF, one by one."""
+"""SDF worlds are read by the rules of SDF."""
 
 import math
 import time
@@ -16,7 +16,7 @@ UNIT_BOX = "<geometry><box><size>1 1 1</size></box></geometry>"
 
 @pytest.fixture
 def load(tmp_path):
-    """Loads the text between <world> and </world>."""
+    """Load the text between <world> and </world>."""
 
     def _load(content, **arguments):
         path = tmp_path / "test.world"
@@ -142,7 +142,7 @@ def test_includes_are_found_by_path_and_may_be_made_static(load, tmp_path, schem
 @pytest.mark.parametrize(
     "library", ["libgazebo_ros_init.so", "libgazebo_ros_factory.so", "libactor_collisions.so"]
 )
-def test_plugins_of_worlds_that_are_not_needed_are_left_out_in_silence(load, library):
+def test_world_plugins_that_are_not_needed_are_ignored_without_a_warning(load, library):
     assert load(f"<plugin name='p' filename='{library}'/>" + model()).warnings == ()
 
 
@@ -168,7 +168,7 @@ def test_an_include_that_includes_itself_is_an_error(load, tmp_path):
         ("<population name='crowd'/>", "population 'crowd'"),
     ],
 )
-def test_what_is_left_out_is_named_and_the_rest_loads(load, content, named):
+def test_unsupported_content_is_ignored_with_a_warning_and_the_rest_is_loaded(load, content, named):
     world = load(content + model(name="rest"))
     assert world.bodies[-1].name == "rest::l"
     assert not any(body.collisions for body in world.bodies[:-1])
@@ -190,7 +190,7 @@ def test_what_is_left_out_is_named_and_the_rest_loads(load, content, named):
         (geometry("<plane><normal>0 0 0</normal></plane>"), "normal"),
     ],
 )
-def test_senseless_values_are_errors_that_name_file_and_element(load, content, named):
+def test_errors_about_values_that_are_not_valid_name_file_and_element(load, content, named):
     with pytest.raises(WorldError, match="test.world") as caught:
         load(content)
     assert named in str(caught.value)
@@ -206,7 +206,7 @@ def test_senseless_values_are_errors_that_name_file_and_element(load, content, n
         ("<!DOCTYPE x [<!ENTITY a 'b'><!ENTITY c '&a;&a;'>]><sdf><world name='&c;'/></sdf>", "entities"),
     ],
 )
-def test_files_that_are_no_world_are_refused(tmp_path, text, reason):
+def test_files_that_hold_no_world_are_refused(tmp_path, text, reason):
     path = tmp_path / "bad.world"
     path.write_text(text)
     with pytest.raises(WorldError, match="bad.world") as caught:
@@ -320,13 +320,13 @@ def test_models_stand_in_frames_of_the_world_and_of_each_other(load):
         ),
     ],
 )
-def test_frames_that_are_not_there_or_go_in_circles_are_errors(load, links, reason):
+def test_unknown_and_circular_frames_are_errors(load, links, reason):
     with pytest.raises(WorldError, match="link '[ab]'") as caught:
         load(model(links))
     assert reason in str(caught.value)
 
 
-def test_state_stretches_the_shapes_of_a_model(load):
+def test_the_scale_of_a_state_scales_the_shapes_of_a_model(load):
     world = load(
         geometry("<cylinder><radius>1</radius><length>1</length></cylinder>")
         + "<state world_name='w'><model name='m'><pose>1 0 0 0 0 0</pose><scale>2 3 4</scale></model></state>"
@@ -340,7 +340,7 @@ POLYLINE = (
 
 
 @pytest.mark.parametrize(("height", "top"), [("", 1.0), ("<height>2.5</height>", 2.5)])
-def test_polylines_are_raised_to_walls(load, height, top):
+def test_polylines_are_extruded_to_walls(load, height, top):
     (body,) = load(geometry(f"{POLYLINE}<point>0 2</point>{height}</polyline>")).bodies
     mesh = body.collisions[0].shape
     assert mesh.vertices[:, 2].max() == top
@@ -362,7 +362,7 @@ def test_further_polylines_are_holes(load):
     assert areas_of(lid).sum() == pytest.approx(16.0 - 4.0)
 
 
-def test_what_is_ignored_is_named_once_with_how_often(load):
+def test_ignored_content_of_one_kind_gives_one_warning_with_its_count(load):
     sensor = "<link name='l'><sensor name='s' type='camera'/></link>"
     world = load(model(sensor, "a") + model(sensor, "b") + model("<gripper name='g'/>", "c"))
     assert len(world.warnings) == 2
@@ -370,7 +370,7 @@ def test_what_is_ignored_is_named_once_with_how_often(load):
     assert "sensor 's': ignored (and 1 more like it)" in world.warnings[1]
 
 
-def test_a_missing_mesh_is_told_once_and_is_an_error_if_strict(load):
+def test_a_missing_mesh_gives_one_warning_and_is_an_error_if_strict(load):
     text = geometry("<mesh><uri>model://no/a.dae</uri></mesh>")
     assert len(load(text + text.replace("'m'", "'n'")).warnings) == 1
     for missing in (text, "<include><uri>model://unicorn</uri></include>"):
@@ -378,7 +378,7 @@ def test_a_missing_mesh_is_told_once_and_is_an_error_if_strict(load):
             load(missing, strict=True)
 
 
-def test_of_a_missing_mesh_of_gazebos_own_models_the_footprint_is_there(load):
+def test_a_missing_mesh_of_a_gazebo_model_is_replaced_by_its_footprint(load):
     dumpster = "<mesh><uri>model://dumpster/meshes/dumpster.dae</uri><scale>2 2 1</scale></mesh>"
     world = load(geometry(dumpster))
     vertices = world.bodies[0].collisions[0].shape.vertices
@@ -409,7 +409,7 @@ def test_colours_come_from_the_material_or_its_script(load):
     assert [body.visuals[0].colour for body in world.bodies] == [(1.0, 0.5, 0.0), (0.0, 0.0, 1.0), None]
 
 
-def test_what_is_emissive_glows(load):
+def test_emissive_colours_are_read(load):
     material = "<material><emissive>0.5 2 0 1</emissive></material>"
     world = load(model(f"<link name='l'><visual name='v'>{UNIT_BOX}{material}</visual></link>"))
     assert world.bodies[0].visuals[0].emissive == (0.5, 1.0, 0.0)
@@ -426,9 +426,9 @@ def test_inertia_is_turned_to_its_principal_axes(load):
     assert body.inertia.pose_in_body[2, 3] == 1.0
 
 
-@pytest.mark.parametrize("senseless", ["<ixx>0</ixx>", "<ixx>nan</ixx>", "<ixx>-1</ixx>"])
-def test_moments_that_no_body_has_are_named_and_left_out(load, senseless):
-    inertial = f"<inertial><mass>3</mass><inertia>{senseless}</inertia></inertial>"
+@pytest.mark.parametrize("invalid", ["<ixx>0</ixx>", "<ixx>nan</ixx>", "<ixx>-1</ixx>"])
+def test_moments_of_inertia_that_are_not_positive_are_ignored_with_a_warning(load, invalid):
+    inertial = f"<inertial><mass>3</mass><inertia>{invalid}</inertia></inertial>"
     world = load(f"<model name='m'><link name='l'>{inertial}</link></model>")
     assert world.bodies[0].inertia.moments is None
     assert "link 'l' > inertial > inertia: ignored" in world.warnings[0]

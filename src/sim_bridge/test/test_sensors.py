@@ -120,11 +120,11 @@ def test_bodies_that_move_are_drawn_where_they_are_and_the_robot_itself_is_left_
     part = Collision(Box((0.5, 0.5, 0.5)), np.eye(4))
     drawing.add(Body("ball::l", np.eye(4), (part,), mass=1.0))
     drawing.add(Body("robot::base", np.eye(4), (part,), mass=1.0))
-    triangles, shades = drawing.triangles(lambda name: pose3(5.0), but="robot")
+    triangles, shades = drawing.triangles(lambda name: pose3(5.0), excluded_model="robot")
     assert len(triangles) == len(shades) == 12
     assert triangles[..., 0].mean() == pytest.approx(5.0)
     drawing.remove("ball::l")
-    assert len(drawing.triangles(lambda name: pose3(), but="robot")[0]) == 0
+    assert len(drawing.triangles(lambda name: pose3(), excluded_model="robot")[0]) == 0
 
 
 def test_a_mesh_that_cannot_be_read_is_named_and_the_rest_is_drawn(tmp_path):

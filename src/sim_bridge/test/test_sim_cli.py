@@ -31,7 +31,7 @@ def test_render_map_writes_the_true_map(monkeypatch, tmp_path):
         ([str(HOME), "stem", "--height", "9"], "nothing is solid at a height of 9 m"),
     ],
 )
-def test_render_map_says_what_is_wrong(monkeypatch, capsys, arguments, named):
+def test_errors_of_render_map_name_the_cause(monkeypatch, capsys, arguments, named):
     monkeypatch.setattr("sys.argv", ["render_map", *arguments])
     with pytest.raises(SystemExit) as ended:
         render_map()
@@ -45,7 +45,7 @@ def test_robot_description_prints_a_urdf(monkeypatch, capsys):
     assert "camera_depth_frame" in capsys.readouterr().out
 
 
-def test_a_description_with_frames_of_its_own_is_the_same_robot(monkeypatch, capsys):
+def test_a_description_with_prefixed_frames_is_the_same_robot(monkeypatch, capsys):
     described = []
     for frames in ([], ["--frames", "alice"]):
         monkeypatch.setattr("sys.argv", ["robot_description", "turtlebot_kinect", *frames])

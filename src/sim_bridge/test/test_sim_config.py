@@ -1,4 +1,4 @@
-"""Settings, robots and the configuration that is shipped."""
+"""Settings, robots and the shipped configuration files."""
 
 import dataclasses
 from pathlib import Path
@@ -14,14 +14,14 @@ from sim_bridge.robots import ROBOTS, robot_named
 
 FOLDER = Path(__file__).resolve().parents[1] / "config"
 CONFIG = FOLDER / "sim_bridge.yaml"
-# What the launch file's arguments set.
+# Parameters that are set by the launch file's arguments.
 ARGUMENTS = {"world", "seed", "speed", "wait_for", "static_publishers"}
 
 
 def test_the_shipped_configuration_holds_every_default():
     defaults = {**dataclasses.asdict(SimulationSettings()), **dataclasses.asdict(BridgeSettings(world="w"))}
-    left_out = ARGUMENTS | set(NOISE_PROFILES["ideal"].__dict__)
-    expected = {name: value for name, value in defaults.items() if name not in left_out}
+    other_files = ARGUMENTS | set(NOISE_PROFILES["ideal"].__dict__)
+    expected = {name: value for name, value in defaults.items() if name not in other_files}
     assert yaml.safe_load(CONFIG.read_text()) == expected
 
 
@@ -35,9 +35,14 @@ def test_the_default_noise_is_that_of_the_turtlebot():
     assert BridgeSettings(world="w").noise == "turtlebot"
 
 
-def test_an_unknown_noise_is_refused_with_the_nearest_name():
+def test_an_unknown_noise_profile_is_refused_with_the_nearest_name():
     with pytest.raises(SettingsError, match=r"one of ideal, turtlebot, high.* did you mean ideal\?"):
         noise_named("idea")
+
+
+def test_the_deprecated_name_of_a_noise_profile_is_accepted_with_a_warning():
+    with pytest.warns(FutureWarning, match="'bad' is deprecated; use 'high'"):
+        assert noise_named("bad") == noise_named("high")
 
 
 @pytest.mark.parametrize(
@@ -52,13 +57,13 @@ def test_an_unknown_noise_is_refused_with_the_nearest_name():
         ({"range_dropouts": 0.6, "range_max_readings": 0.5}, "range_dropouts must be with"),
     ],
 )
-def test_senseless_settings_are_named(values, named):
+def test_errors_about_settings_name_the_parameter(values, named):
     with pytest.raises(SettingsError, match=named):
         SimulationSettings(**values)
 
 
 @pytest.mark.parametrize("values", [{"world": ""}, {"world": "w", "seed": -1}, {"world": "w", "speed": -1.0}])
-def test_senseless_settings_of_the_node_are_named(values):
+def test_errors_about_settings_of_the_node_name_the_parameter(values):
     with pytest.raises(SettingsError, match=list(values)[-1]):
         BridgeSettings(**values)
 
@@ -69,5 +74,5 @@ def test_an_unknown_robot_is_refused_with_the_nearest_name():
 
 
 @pytest.mark.parametrize("name", ["turtlebot_lidar", "turtlebot_kinect"])
-def test_lasers_look_where_costmaps_of_the_turtlebot_expect_them(name):
+def test_lasers_are_at_the_height_that_costmaps_of_the_turtlebot_expect(name):
     assert 0.25 < ROBOTS[name].laser.pose_in_base[2, 3] < 0.35

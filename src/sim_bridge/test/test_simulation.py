@@ -1,4 +1,4 @@
-"""The robot in its world: it rests, drives, measures and repeats itself."""
+"""A robot in a world: it rests, drives and measures, and a seed repeats a run."""
 
 import hashlib
 import math
@@ -33,7 +33,7 @@ WALLED = World("walled", (*FLOOR.bodies, WALL))
 
 
 def drive(simulation, command, seconds):
-    """Gives the command at every step; returns the last observation."""
+    """Give the command at every step; return the last result."""
     for _ in range(round(seconds / simulation.step_seconds)):
         observation = simulation.step(command)
     return observation
@@ -104,7 +104,7 @@ def test_a_command_that_is_not_finite_stops_the_robot(command):
     assert abs(drive(simulation, command, 0.5).twist.v) < 1e-3
 
 
-def test_a_wall_is_touched_named_and_not_climbed():
+def test_a_collision_with_a_wall_is_reported_and_the_wall_is_not_climbed():
     simulation = Simulation(WALLED, settings=EXACT)
     touched = set()
     for _ in range(200):
@@ -115,12 +115,12 @@ def test_a_wall_is_touched_named_and_not_climbed():
     assert observation.base_in_world.x == pytest.approx(0.9 - 0.178, abs=0.01)
 
 
-def test_nothing_is_touched_on_a_free_floor():
+def test_there_are_no_contacts_on_a_free_floor():
     simulation = Simulation(FLOOR)
     assert all(simulation.step(Twist2(0.5, 1.0)).contacts == () for _ in range(100))
 
 
-def test_what_is_put_beside_something_feels_it_at_once():
+def test_a_robot_that_is_moved_beside_an_obstacle_reports_the_contact_at_once():
     post = body("post::link", Cylinder(0.1, 1.0), pose3(3.0, 0.0, 0.5))
     simulation = Simulation(World("post", (*FLOOR.bodies, post)))
     models = simulation.scene.models
@@ -133,7 +133,7 @@ def test_what_is_put_beside_something_feels_it_at_once():
     assert simulation.step().contacts == ("post::link",)
 
 
-def test_odometry_without_errors_is_the_truth():
+def test_odometry_without_errors_equals_the_true_pose():
     observation = drive(Simulation(FLOOR, settings=EXACT), Twist2(0.3, 0.4), 10.0)
     assert observation.odometry.base_in_odom.distance_to(observation.base_in_world) < 0.03
     assert abs(wrap(observation.odometry.base_in_odom.yaw - observation.base_in_world.yaw)) < 0.01
@@ -189,7 +189,7 @@ def test_a_lidar_without_return_reads_infinity_and_a_depth_camera_nan():
     assert np.isnan(last_scan("turtlebot_kinect").ranges).all()
 
 
-def test_the_same_seed_repeats_itself_and_another_does_not():
+def test_the_same_seed_repeats_a_run_and_another_does_not():
     def run(seed):
         simulation = Simulation(load_world(HOME), seed=seed)
         return digest([simulation.step(Twist2(0.3, 0.2)) for _ in range(100)])
@@ -198,7 +198,7 @@ def test_the_same_seed_repeats_itself_and_another_does_not():
     assert run(1) != run(2)
 
 
-def test_the_noise_of_one_sensor_leaves_the_other_alone():
+def test_the_noise_of_one_sensor_does_not_depend_on_another():
     def odometry(scan_rate):
         simulation = Simulation(FLOOR, settings=SimulationSettings(scan_rate=scan_rate), seed=3)
         return drive(simulation, Twist2(0.3, 0.2), 2.0).odometry
@@ -206,7 +206,7 @@ def test_the_noise_of_one_sensor_leaves_the_other_alone():
     assert odometry(10) == odometry(1)
 
 
-def test_a_box_can_be_added_is_seen_and_bumped_into():
+def test_an_added_box_is_scanned_and_collided_with():
     simulation = Simulation(FLOOR, settings=EXACT)
     simulation.add_box("parcel", (0.4, 0.4, 0.5), Pose2(1.0, 0.0))
     scan = drive(simulation, None, 0.1).scan
@@ -224,7 +224,7 @@ def test_a_light_box_is_pushed_along():
     assert drive(simulation, Twist2(0.4, 0.0), 3.0).base_in_world.x > 0.8
 
 
-def test_the_robot_must_have_room_and_a_floor_to_start():
+def test_the_robot_needs_free_space_and_a_floor_to_start():
     with pytest.raises(WorldError, match="inside wall::link"):
         Simulation(WALLED, base_in_world=Pose2(1.0, 0.0))
     with pytest.raises(WorldError, match="inside wardrobe::link"):
@@ -245,7 +245,7 @@ def test_a_robot_that_would_start_a_little_inside_a_wall_is_moved_out_of_it(robo
 
 
 def moved_out_of(robot, x):
-    """What a robot that would start at ``x`` is moved out of."""
+    """Return what a robot that would start at ``x`` is moved out of."""
     scene = Simulation(WALLED, base_in_world=Pose2(-2.0, 0.0), settings=EXACT).scene
     return scene.add_robot("other", robot, Pose2(x, 0.0))
 
@@ -255,20 +255,20 @@ def test_what_a_robot_is_moved_out_of_is_named():
     assert moved_out_of(ROBOTS["turtlebot_lidar"], 0.5) == ()
 
 
-def test_a_kobuki_feels_a_wall_ahead_with_the_centre_of_its_bumper():
+def test_a_wall_ahead_triggers_the_centre_bumper_of_a_kobuki():
     simulation = Simulation(WALLED, settings=EXACT)
-    simulation.scene.robot(ROBOT_NAME).want("kobuki")
+    simulation.scene.robot(ROBOT_NAME).enable_sensor("kobuki")
     assert simulation.step().kobuki == KobukiReading()
-    felt = set()
+    pressed = set()
     for _ in range(200):
-        felt |= simulation.step(Twist2(0.5, 0.0)).kobuki.bumpers
-    assert felt == {CENTRE}
+        pressed |= simulation.step(Twist2(0.5, 0.0)).kobuki.bumpers
+    assert pressed == {CENTRE}
 
 
-def test_a_kobuki_feels_the_edge_of_its_floor_and_its_wheels_hang_beyond():
+def test_an_edge_of_the_floor_triggers_cliff_sensors_and_then_wheel_drops_of_a_kobuki():
     table = body("table::link", Box((2.0, 2.0, 0.1)), pose3(0.0, 0.0, -0.05))
     simulation = Simulation(World("table", (table,)), settings=EXACT)
-    simulation.scene.robot(ROBOT_NAME).want("kobuki")
+    simulation.scene.robot(ROBOT_NAME).enable_sensor("kobuki")
     first_cliff = None
     for _ in range(200):
         seen = simulation.step(Twist2(0.5, 0.0))
@@ -279,7 +279,7 @@ def test_a_kobuki_feels_the_edge_of_its_floor_and_its_wheels_hang_beyond():
     assert seen.kobuki.dropped == {0, 1}
 
 
-def test_without_motor_power_no_command_is_heard():
+def test_without_motor_power_commands_are_ignored():
     simulation = Simulation(FLOOR)
     robot = simulation.scene.robot("mobile_base")
     robot.switch_motors(False)

@@ -45,13 +45,13 @@ def test_a_box_on_cell_borders_fills_exactly_its_cells():
         (Box((1.0, 1.0, 1.0)), pose3(2.0, 0.0, 0.3, pitch=math.pi / 4.0), math.sqrt(2.0)),
     ],
 )
-def test_areas_are_those_of_the_cut(shape, pose, expected):
+def test_areas_are_those_of_the_slice(shape, pose, expected):
     """The cells on the rim are occupied too: half a cell more, all along the rim of at most 5 m."""
     grid = true_map(world_of((shape, pose)), resolution=0.01, thickness=1e-6)
     assert expected - 1e-3 <= area(grid) <= expected + 5.0 * 0.01
 
 
-def test_what_lies_above_or_below_the_cut_is_not_in_the_map():
+def test_solids_above_or_below_the_slice_are_not_in_the_map():
     with pytest.raises(WorldError, match="nothing is solid at a height of 0.3 m"):
         true_map(
             world_of(
@@ -68,7 +68,7 @@ def test_space_outside_closed_walls_is_unknown():
     assert grid.value_at(1.2, 0.0) == UNKNOWN
 
 
-def test_a_mesh_is_cut_into_its_outline():
+def test_a_mesh_is_sliced_into_its_outline():
     corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
     triangles = np.array([[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]])
     grid = true_map(world_of((Mesh(corners, triangles), pose3(2.0))), resolution=0.01)

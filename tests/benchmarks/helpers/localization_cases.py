@@ -15,7 +15,7 @@ from sim_bridge.views.true_map import true_map
 from sim_bridge.world import World
 
 ROOT = Path(__file__).resolve().parents[3]
-NOISES = {name: SimulationSettings(**noise_named(name)) for name in ("turtlebot", "bad")}
+NOISES = {name: SimulationSettings(**noise_named(name)) for name in ("turtlebot", "high")}
 FRAMES = {"base_frame_id": "base_footprint"}
 TURTLEBOT = yaml.safe_load((ROOT / "src/amcl_lite/config/turtlebot.yaml").read_text())
 PARAMETERS = {"turtlebot": TURTLEBOT, "default": FRAMES}

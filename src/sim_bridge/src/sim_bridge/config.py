@@ -1,4 +1,4 @@
-"""Settings of the simulation and of its node: every parameter once, with its default and meaning."""
+"""Parameters of the simulation, of the node sim_bridge and of fault_relay."""
 
 import sys
 from dataclasses import dataclass
@@ -8,24 +8,24 @@ from planar.config.parameters import POSITIVE, Interval, check_parameters, param
 from planar.config.settings import check
 from sim_bridge.noise import NOISE_PROFILES, NOT_NEGATIVE, NoiseSettings
 
-# Hertz; with more, a single period of the odometry would take seconds.
-HIGHEST_PHYSICS_RATE = 100_000
-# Seconds: a period of control, so that simulation and control are carried out side by side.
+# With more, a single period of the odometry would take seconds [Hz].
+MAX_PHYSICS_RATE = 100_000
+# One control period, so that simulation and control run in parallel [s].
 LATENCY = 0.1
 
 
 @dataclass(frozen=True)
 class SimulationSettings(NoiseSettings):
-    """Rates are in hertz of simulated time and must divide ``physics_rate``."""
+    """Rates and noise of a simulation; rates are in simulated time and must divide ``physics_rate``."""
 
     physics_rate: int = parameter(
         200,
-        "steps of physics a second; every other rate must divide it",
+        "physics steps per second; every other rate must divide it",
         "Hz",
-        Interval(1, HIGHEST_PHYSICS_RATE),
+        Interval(1, MAX_PHYSICS_RATE),
     )
-    odometry_rate: int = parameter(50, "odom, /tf and base_pose_ground_truth", "Hz")
-    scan_rate: int = parameter(10, "scan", "Hz")
+    odometry_rate: int = parameter(50, "rate of odom, /tf and base_pose_ground_truth", "Hz")
+    scan_rate: int = parameter(10, "rate of scan", "Hz")
 
     def __post_init__(self):
         super().__post_init__()
@@ -37,11 +37,11 @@ class SimulationSettings(NoiseSettings):
 
 @dataclass(frozen=True)
 class RunTimeSettings:
-    """What dynamic_reconfigure may change."""
+    """Parameters that dynamic_reconfigure may change."""
 
     speed: float = parameter(
         1.0,
-        "times real time; 0: as fast as the nodes of wait_for keep up",
+        "real-time factor; 0: as fast as the nodes of wait_for keep up",
         bounds=Interval(0.0, sys.float_info.max, "0 or a positive number"),
         dynamic=100.0,
     )
@@ -52,25 +52,31 @@ class RunTimeSettings:
 
 @dataclass(frozen=True)
 class BridgeSettings(RunTimeSettings):
-    """Of the node; single values of the noise may be set beside it."""
+    """Parameters of the node sim_bridge, beside those of SimulationSettings."""
 
-    world: str = parameter("", "world that is simulated", required="the path of an SDF file")
-    seed: int = parameter(0, "all noise follows from it", bounds=NOT_NEGATIVE)
-    wait_for: str = parameter("", "names of nodes, by spaces, that the simulation stays in step with")
+    world: str = parameter("", "SDF file of the world", required="the path of an SDF file")
+    seed: int = parameter(0, "seed of all noise", bounds=NOT_NEGATIVE)
+    wait_for: str = parameter(
+        "", "names of the nodes, separated by spaces, that are synchronised with the simulation"
+    )
     static_publishers: str = parameter(
-        "", "names of nodes, by spaces, whose static transforms those of wait_for have before time passes"
+        "",
+        "names of nodes, separated by spaces, whose static transforms the synchronised nodes receive before "
+        "time passes",
     )
     latency: float = parameter(
         LATENCY,
-        "from the moment at which a node in step looks at the world until what it then sends takes effect",
+        "simulated time after which messages of a synchronised node take effect",
         "s",
         POSITIVE,
     )
-    faults_file: str = parameter("", "YAML with a list of faults (docs/reference/faults.md); empty: none")
-    clock_rate: int = parameter(50, "/clock; must divide odometry_rate", "Hz", POSITIVE)
-    joint_state_rate: int = parameter(10, "joint_states; must divide odometry_rate", "Hz", POSITIVE)
+    faults_file: str = parameter(
+        "", "YAML file with a list of faults (docs/reference/faults.md); empty: none"
+    )
+    clock_rate: int = parameter(50, "rate of /clock; must divide odometry_rate", "Hz", POSITIVE)
+    joint_state_rate: int = parameter(10, "rate of joint_states; must divide odometry_rate", "Hz", POSITIVE)
     strict: bool = parameter(
-        False, "a mesh or model that the world lacks is an error; otherwise it is named and left out"
+        False, "a missing mesh or model is an error; otherwise it is ignored with a warning"
     )
     noise: str = parameter(
         "turtlebot",
@@ -81,15 +87,16 @@ class BridgeSettings(RunTimeSettings):
 
 @dataclass(frozen=True)
 class RelaySettings:
-    """Of the node that puts faults between other people's nodes."""
+    """Parameters of fault_relay, which injects faults between other nodes."""
 
     faults_file: str = parameter(
         "",
-        "YAML with a list of faults (docs/reference/faults.md); times since the first clock; empty: none",
+        "YAML file with a list of faults (docs/reference/faults.md), in seconds since the first /clock; "
+        "empty: none",
     )
-    seed: int = parameter(0, "what is random about faults follows from it", bounds=NOT_NEGATIVE)
+    seed: int = parameter(0, "seed of the faults' randomness", bounds=NOT_NEGATIVE)
     publish_tf: bool = parameter(
-        False, "/tf has odom -> base as the faulty odometry tells it; nobody else may publish that then"
+        False, "publish odom -> base of the faulty odometry on /tf; no other node may publish it then"
     )
 
     def __post_init__(self):
@@ -98,16 +105,16 @@ class RelaySettings:
 
 @dataclass(frozen=True)
 class RobotSettings:
-    """A robot and where it starts in the world."""
+    """A robot and its start pose."""
 
     robot: str = parameter("turtlebot_lidar", "name of a robot, or a URDF or xacro file; empty: no robot")
-    x: float = parameter(0.0, "where it starts in the world", "m")
-    y: float = parameter(0.0, "where it starts in the world", "m")
-    yaw: float = parameter(0.0, "its heading there", "rad")
-    namespace: str = parameter("", "of its topics")
+    x: float = parameter(0.0, "start position in the world", "m")
+    y: float = parameter(0.0, "start position in the world", "m")
+    yaw: float = parameter(0.0, "start heading in the world", "rad")
+    namespace: str = parameter("", "namespace of its topics")
 
 
-# What the arguments of the launch file set.
+# Parameters that are set by arguments of the launch file.
 ARGUMENTS = ("world", "seed", "speed", "wait_for", "static_publishers")
 _NOISE_VALUES = {each.name for each in parameters_of(NoiseSettings)}
 
@@ -116,14 +123,14 @@ CONFIG_FILES = {
         "",
         *(each for each in parameters_of(SimulationSettings) if each.name not in _NOISE_VALUES),
         *(each for each in parameters_of(BridgeSettings) if each.name not in ARGUMENTS),
-        about="Settings of sim_bridge, but for the launch file's arguments. Rates are of simulated time.",
+        about="Parameters of sim_bridge, except the launch file's arguments. Rates are in simulated time.",
     ),
-    "fault_relay.yaml": Section("", *parameters_of(RelaySettings), about="Settings of fault_relay."),
+    "fault_relay.yaml": Section("", *parameters_of(RelaySettings), about="Parameters of fault_relay."),
     "noise.yaml": Section(
         "",
         *(Section(name, noise) for name, noise in NOISE_PROFILES.items()),
-        about="The noise profiles of sim_bridge, to look up: its parameter noise names one of them.\n"
-        "ideal: what the sensors say is true. turtlebot: a Kobuki with a Kinect or a small lidar.\n"
-        "bad: what a localization should still bear.",
+        about="Noise profiles of sim_bridge, for reference: its parameter noise selects one of them.\n"
+        "ideal: no noise. turtlebot: a Kobuki with a Kinect or a small lidar.\n"
+        "high: the most that localization has to handle.",
     ),
 }

@@ -1,4 +1,4 @@
-"""Doors that are shut for a time, as somebody does it who does not ask the robot."""
+"""Opens and closes doors at their scheduled times."""
 
 import math
 from typing import Iterable, Sequence, Tuple
@@ -14,26 +14,27 @@ from sim_bridge.physics.kinematics import KinematicBodies
 from sim_bridge.robot import Robot
 from sim_bridge.world import Body, Collision
 
-# Times a second that doors are looked after.
+# Rate at which doors are updated [Hz].
 DOOR_RATE = 10
-# Metres: thickness and height of a door, from it to whom it waits for, and where it is while it is open.
-THICKNESS, HEIGHT, NEAR = 0.06, 1.0, 1.0
-AWAY = 500.0
+# Thickness and height of a door, and distance within which it yields to robots and pedestrians [m].
+THICKNESS, HEIGHT, CLEARANCE = 0.06, 1.0, 1.0
+# Coordinate, out of the world, at which a door is kept while it is open [m].
+PARKED = 500.0
 
 
 class Doors:
-    """Bodies that fill their doorways while they are shut, and are out of the world while they are open.
+    """The doors of a scene: bodies that fill their doorways while closed and are moved away while open.
 
-    None shuts while a robot is near, and one that is shut opens to people, who have hands.
+    A door does not close while a robot is near, and opens for pedestrians.
     """
 
-    def __init__(self, each: Sequence[Door]):
-        self._each = tuple(each)
-        self._begin()
-        self.bodies = tuple(_body_of(door, is_shut) for door, is_shut in zip(each, self._are_shut))
+    def __init__(self, doors: Sequence[Door]):
+        self._doors = tuple(doors)
+        self._reset()
+        self.bodies = tuple(_body_of(door, is_closed) for door, is_closed in zip(doors, self._are_closed))
 
-    def _begin(self) -> None:
-        self._are_shut = [door.is_due(0.0) for door in self._each]
+    def _reset(self) -> None:
+        self._are_closed = [door.is_scheduled_closed(0.0) for door in self._doors]
 
     def update(
         self,
@@ -44,36 +45,42 @@ class Doors:
         robots: Iterable[Robot],
         people: np.ndarray,
     ) -> None:
-        """Before the step of physics number ``step``, of ``rate`` a second, which begins at ``stamp``.
+        """Open and close doors, if due; at time 0 all return to their initial states.
 
-        ``people``: (N, 5), as sim_bridge.people.crowd has them. At time 0 all begin anew.
+        Args:
+            engine: Holds the doors' bodies.
+            step: Number of the next physics step.
+            rate: Physics steps per second.
+            stamp: Simulated time [s].
+            robots: The robots.
+            people: States (N, 5) of the pedestrians, as ``Crowd.rows``.
         """
-        if not self._each or step % max(rate // DOOR_RATE, 1):
+        if not self._doors or step % max(rate // DOOR_RATE, 1):
             return
         if stamp == 0.0:
-            self._begin()
+            self._reset()
         robots_xy = rows_of(robots)[:, :2]
-        for number, door in enumerate(self._each):
-            may_shut = self._are_shut[number] or not _is_near(door, robots_xy)
-            is_shut = door.is_due(stamp) and may_shut and not _is_near(door, people[:, :2])
-            self._are_shut[number] = is_shut
-            if engine.has_link(door.link):  # nobody has taken it away
-                engine.set_positions([(door.link, *_place(door, is_shut))])
+        for number, door in enumerate(self._doors):
+            may_close = self._are_closed[number] or not _is_near(door, robots_xy)
+            is_closed = door.is_scheduled_closed(stamp) and may_close and not _is_near(door, people[:, :2])
+            self._are_closed[number] = is_closed
+            if engine.has_link(door.link):  # it may have been deleted
+                engine.set_positions([(door.link, *_position(door, is_closed))])
 
 
 def _is_near(door: Door, others_xy: np.ndarray) -> bool:
-    """Whether one of others (N, 2) is where the door would touch it, or soon will be."""
+    """Return whether one of the positions ``others_xy`` (N, 2) is close to the closed door."""
     across = np.array((-math.sin(door.pose.yaw), math.cos(door.pose.yaw)))
     off_xy = others_xy - (door.pose.x, door.pose.y)
     along = np.clip(off_xy @ across, -door.width / 2.0, door.width / 2.0)
-    return bool((np.hypot(*(off_xy - along[:, None] * across).T) < NEAR).any())
+    return bool((np.hypot(*(off_xy - along[:, None] * across).T) < CLEARANCE).any())
 
 
-def _place(door: Door, is_shut: bool) -> Tuple[float, float]:
-    return (door.pose.x, door.pose.y) if is_shut else (AWAY, AWAY)
+def _position(door: Door, is_closed: bool) -> Tuple[float, float]:
+    return (door.pose.x, door.pose.y) if is_closed else (PARKED, PARKED)
 
 
-def _body_of(door: Door, is_shut: bool) -> Body:
-    pose = from_pose2(Pose2(*_place(door, is_shut), door.pose.yaw), z=HEIGHT / 2.0)
+def _body_of(door: Door, is_closed: bool) -> Body:
+    pose = from_pose2(Pose2(*_position(door, is_closed), door.pose.yaw), z=HEIGHT / 2.0)
     solid = Collision(Box((THICKNESS, door.width, HEIGHT)), np.eye(4))
     return Body(door.link, pose, (solid,), is_kinematic=True)

@@ -1,4 +1,4 @@
-"""A door, as data."""
+"""Description of a door."""
 
 import math
 from dataclasses import dataclass
@@ -9,9 +9,17 @@ from sim_bridge.errors import WorldError
 
 @dataclass(frozen=True)
 class Door:
-    """The door ``name`` in a doorway ``width`` metres wide, which one goes through along the yaw of ``pose``.
+    """A door that is closed for some time.
 
-    It is shut from ``start`` to ``end``, seconds of simulated time.
+    Attributes:
+        name: Name of its model.
+        pose: Pose of the doorway's centre; its yaw is the direction of passage.
+        width: Width of the doorway [m].
+        start: Simulated time at which the door closes [s].
+        end: Simulated time at which it opens [s].
+
+    Raises:
+        WorldError: A value is not valid.
     """
 
     name: str
@@ -22,14 +30,13 @@ class Door:
 
     def __post_init__(self):
         if not (self.pose.is_in_range() and 0.0 < self.width < math.inf and 0.0 <= self.start < self.end):
-            raise WorldError(
-                f"{self.name}: a door needs a place, a positive width, and to end after its start"
-            )
+            raise WorldError(f"{self.name}: a door needs a valid pose, a positive width and 0 <= start < end")
 
     @property
     def link(self) -> str:
+        """Name of its link."""
         return f"{self.name}::link"
 
-    def is_due(self, stamp: float) -> bool:
-        """Whether it is to be shut."""
+    def is_scheduled_closed(self, stamp: float) -> bool:
+        """Return whether the door should be closed at a simulated time [s]."""
         return self.start <= stamp < self.end

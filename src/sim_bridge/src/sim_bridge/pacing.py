@@ -18,11 +18,10 @@ class Pacer:
 
     The nodes of ``wait_for`` report how far they have processed the simulation; simulated time never passes
     more than one period of a node ahead of it. The period is the longest of the latest gaps between two of
-    its reports. A node that stops the simulation for ``patience`` is given up as missing, until it reports
-    again and has caught
-    up: a node that lags for good, as one that waits for dead odometry, would otherwise stop the simulation
-    again and again. While a node is missing, as all are at the start, the simulation runs at most in real
-    time.
+    its reports. A node that stops the simulation for ``patience`` is given up as missing until it reports
+    again and has caught up: a node that lags for good, e.g. one that waits for dead odometry, would otherwise
+    stop the simulation again and again. While a node is missing, as all are at the start, the simulation runs
+    at most in real time.
 
     Args:
         speed: Multiple of real time; 0 for no limit.

@@ -199,9 +199,9 @@ class Robot:
         each = (mount.steps_at_once for mount in self._mounts.values())
         self.steps_at_once = reduce(math.gcd, each, self._interval)
 
-    def want(self, name: str, is_wanted: bool = True) -> None:
+    def enable_sensor(self, name: str, is_enabled: bool = True) -> None:
         """Enable or disable a sensor that measures only on demand."""
-        self._mounts[name].enable(is_wanted)
+        self._mounts[name].enable(is_enabled)
 
     def begin_steps(self, step: int) -> None:
         """Set the motors if due, before physics step number ``step``."""

@@ -1,4 +1,4 @@
-"""The robots that can be simulated, by name or by file."""
+"""The built-in robots, and robots from URDF or xacro files."""
 
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
@@ -10,12 +10,12 @@ from sim_bridge.description.urdf import FindFile, no_file
 from sim_bridge.errors import RobotError
 
 _URDF_FOLDER = Path(__file__).parent / "urdf"
-# A name with one of these endings is a file's.
-FILE_ENDINGS = (".urdf", ".xacro", ".xml")
+# A name with one of these suffixes is the path of a file.
+FILE_SUFFIXES = (".urdf", ".xacro", ".xml")
 
 
 def _profile(name: str, *files: str) -> RobotProfile:
-    """A robot put together from URDF files: the first with the parts of the others added."""
+    """Return a robot of several URDF files: the first one with the elements of the others added."""
     first, *others = (ElementTree.parse(str(_URDF_FOLDER / file)).getroot() for file in files)
     for other in others:
         first.extend(other)
@@ -35,10 +35,18 @@ ROBOTS: Dict[str, RobotProfile] = {name: _profile(name, *files) for name, files 
 
 
 def robot_named(name: str, find_file: FindFile = no_file) -> RobotProfile:
-    """The profile of that name, or the robot of that URDF or xacro file. Raises RobotError."""
+    """Return a built-in robot, or the robot of a file.
+
+    Args:
+        name: One of ROBOTS, or the path of a .urdf or .xacro file.
+        find_file: Finds the files of package:// and model:// URIs.
+
+    Raises:
+        RobotError: There is no such robot, or the file cannot be used.
+    """
     if name in ROBOTS:
         return ROBOTS[name]
-    if name.endswith(FILE_ENDINGS):
+    if name.endswith(FILE_SUFFIXES):
         try:
             path = Path(name).expanduser()
         except RuntimeError as error:

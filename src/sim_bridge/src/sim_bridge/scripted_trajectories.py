@@ -1,4 +1,4 @@
-"""What goes its own way, whatever it meets: Gazebo's animated models, DynaBARN's obstacles, a leader."""
+"""Scripted trajectories of dynamic obstacles: SDF actors, DynaBARN's cylinders, a leader to follow."""
 
 from bisect import bisect_right
 from dataclasses import dataclass
@@ -10,15 +10,21 @@ import numpy as np
 from sim_bridge.errors import WorldError
 from sim_bridge.physics.kinematics import KinematicBodies
 
-# Times a second that bodies on a course are put to where they then are.
+# Rate at which bodies are moved along their trajectories [Hz].
 TRAJECTORY_RATE = 50
 
 
 @dataclass(frozen=True, eq=False)
 class ScriptedTrajectory:
-    """The way of the body ``link``: at ``times`` (N,), s, from 0, it is at ``points_xy`` (N, 2), then anew.
+    """A closed-loop trajectory of a kinematic body: piecewise linear, repeated after its last time.
 
-    In between it goes straight. Raises WorldError if that is no way.
+    Attributes:
+        link: Name of the body, ``model::link``.
+        times: Increasing times (N,) from 0 [s].
+        points_xy: Positions (N, 2) in the world at these times [m].
+
+    Raises:
+        WorldError: The times do not increase from 0, or there is not one finite point for each.
     """
 
     link: str
@@ -26,15 +32,23 @@ class ScriptedTrajectory:
     points_xy: np.ndarray
 
     def __post_init__(self):
-        rises = len(self.times) > 1 and self.times[0] == 0.0 and bool((np.diff(self.times) > 0.0).all())
-        if not (rises and self.points_xy.shape == (len(self.times), 2) and np.isfinite(self.points_xy).all()):
-            raise WorldError(f"{self.link}: a course needs times that rise from 0, and a place for each")
+        is_increasing = (
+            len(self.times) > 1 and self.times[0] == 0.0 and bool((np.diff(self.times) > 0.0).all())
+        )
+        if not (
+            is_increasing
+            and self.points_xy.shape == (len(self.times), 2)
+            and np.isfinite(self.points_xy).all()
+        ):
+            raise WorldError(
+                f"{self.link}: a trajectory needs increasing times from 0 and a finite point for each"
+            )
 
     def at(self, stamp: float) -> Tuple[float, float]:
-        """Where the body is, x and y in the world."""
+        """Return the position, x and y in the world [m], at a simulated time [s]."""
         time = stamp % self._end
-        starts, legs = self._legs
-        start, x, y, v_x, v_y = legs[bisect_right(starts, time) - 1]
+        starts, segments = self._segments
+        start, x, y, v_x, v_y = segments[bisect_right(starts, time) - 1]
         return x + v_x * (time - start), y + v_y * (time - start)
 
     @cached_property
@@ -42,22 +56,22 @@ class ScriptedTrajectory:
         return float(self.times[-1])
 
     @cached_property
-    def _legs(self) -> Tuple[List[float], List[List[float]]]:
-        """When each begins, and that, where and how fast, as plain numbers, quicker to ask one by one."""
+    def _segments(self) -> Tuple[List[float], List[List[float]]]:
+        """Start times of the segments, and start time, position and velocity of each, as plain floats."""
         starts = self.times[:-1, None]
         speeds = np.diff(self.points_xy, axis=0) / np.diff(self.times)[:, None]
         return starts[:, 0].tolist(), np.hstack((starts, self.points_xy[:-1], speeds)).tolist()
 
 
 class TrajectoryPlayer:
-    """All courses of a scene; ``each`` may be changed at any time."""
+    """Moves the bodies of a scene along ``trajectories``, which may be replaced at any time."""
 
     def __init__(self, trajectories: Tuple[ScriptedTrajectory, ...]):
         self.trajectories = trajectories
 
     def update(self, engine: KinematicBodies, step: int, rate: int, stamp: float) -> None:
-        """Before the step of physics number ``step``, of ``rate`` a second, which begins at ``stamp``."""
+        """Move the bodies, if due, before physics step ``step``, of ``rate`` per second, at ``stamp`` [s]."""
         if self.trajectories and step % max(rate // TRAJECTORY_RATE, 1) == 0:
-            # Somebody may have taken one away.
-            there = (course for course in self.trajectories if engine.has_link(course.link))
-            engine.set_positions((course.link, *course.at(stamp)) for course in there)
+            # Bodies may have been deleted.
+            present = (each for each in self.trajectories if engine.has_link(each.link))
+            engine.set_positions((each.link, *each.at(stamp)) for each in present)

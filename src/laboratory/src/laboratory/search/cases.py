@@ -17,7 +17,7 @@ from laboratory.worlds.boxes import apart_from, spots_for_boxes
 from laboratory.worlds.people import TO_START, People, Walk
 from planar import Pose2
 from sim_bridge.faults import KINDS, Fault
-from sim_bridge.noise import noise_named
+from sim_bridge.noise import DEPRECATED_PROFILES, noise_named
 
 # Simulated seconds within which a fault begins, and for how long it lasts.
 BEGIN, LAST = (2.0, 20.0), (1.0, 8.0)
@@ -86,6 +86,7 @@ class Ingredients:
             space[f"fault{number}/start"] = FloatDistribution(*BEGIN)
             space[f"fault{number}/seconds"] = FloatDistribution(*LAST)
         if self.noise:
+            # Not "high", its name today: stored studies hold these choices.
             space["noise"] = CategoricalDistribution(["", "bad"])
         return space
 
@@ -98,7 +99,7 @@ class Ingredients:
                 end = round(start + values[f"fault{number}/seconds"], 1)
                 pieces.append(Fault(kind, start, end, KINDS[kind].strength[0]))
         if self.noise and values["noise"]:
-            pieces.append(Noise(values["noise"]))
+            pieces.append(Noise(DEPRECATED_PROFILES.get(values["noise"], values["noise"])))
         return Case(values["seed"], tuple(pieces))
 
     def _boxes(self, base: Scenario, values: Mapping[str, Any]) -> List[Pose2]:

@@ -1,4 +1,4 @@
-"""Robots from URDF and SDF: their rigid parts, and what the <gazebo> plugins make of them."""
+"""Reads robots from URDF and SDF: rigid parts, and drives and sensors of Gazebo plugins."""
 
 from sim_bridge.description.files import read_robot_file
 from sim_bridge.description.profile import RobotProfile

@@ -1,4 +1,4 @@
-"""A robot as bodies and joints, which physics builds as it builds any other model."""
+"""Bodies and joints of a robot, for the physics engine."""
 
 from typing import Tuple
 
@@ -8,12 +8,12 @@ from sim_bridge.description.structure import RobotModel
 from sim_bridge.geometry.pose3 import IDENTITY
 from sim_bridge.world import Body, Inertia, Joint, SurfaceProperties
 
-# The base slides: its casters roll any way, and its sides must not climb walls.
+# The base has no friction: its casters roll in any direction, and its sides must not climb walls.
 SLIDING, ROLLING = SurfaceProperties(friction=0.0), SurfaceProperties(friction=1.0)
 
 
 def bodies_of(model: RobotModel, name: str) -> Tuple[Tuple[Body, ...], Tuple[Joint, ...]]:
-    """The base and the wheels of the robot ``name``, seen from its base frame, and the joints between them.
+    """Return the base and the wheels of a robot, in its base frame, and the joints between them.
 
     The mass of a wheel is at its hub.
     """

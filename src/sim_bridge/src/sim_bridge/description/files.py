@@ -1,4 +1,4 @@
-"""Robots in files: URDF, or xacro that becomes URDF."""
+"""Robot description files: URDF and xacro."""
 
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
@@ -14,12 +14,21 @@ from sim_bridge.errors import RobotError
 
 
 def read_robot_file(path: Path, find_file: FindFile, arguments: Dict[str, str] = {}) -> RobotProfile:
-    """The robot of a URDF or xacro file; ``arguments``: of the xacro. Raises RobotError naming the file."""
+    """Read the robot of a URDF or xacro file.
+
+    Args:
+        path: The file.
+        find_file: Finds the files of package:// and model:// URIs.
+        arguments: Arguments of the xacro.
+
+    Raises:
+        RobotError: The file cannot be used.
+    """
     return read_urdf_robot(read_description(path, arguments), str(path), find_file)
 
 
 def read_description(path: Path, arguments: Dict[str, str] = {}) -> str:
-    """The URDF text of a file. Raises RobotError naming it."""
+    """Return the URDF text of a URDF or xacro file. Raises RobotError naming the file."""
     if path.suffix == ".xacro":
         return _expanded(path, arguments)
     try:
@@ -35,14 +44,14 @@ def _expanded(path: Path, arguments: Dict[str, str]) -> str:
         raise RobotError(f"{path}: cannot be read (no such file)")
     try:
         return xacro.process_file(str(path), mappings=dict(arguments)).toxml()
-    except Exception as error:  # what xacro raises has no common class, and its text is of several lines
+    except Exception as error:  # xacro's exceptions have no common class, and their texts several lines
         raise RobotError(f"{path}: not readable xacro ({' '.join(str(error).split())})") from None
 
 
 def prefix_frames(name: str, urdf: str) -> str:
-    """A URDF whose links, and thereby frames, have ``name``/ before their names.
+    """Return a URDF whose link names, and so the frames, have the prefix ``name``/.
 
-    For a robot_state_publisher: Debian 11's (1.15.1) knows no ``tf_prefix``.
+    For robot_state_publisher, which in Debian 11 (1.15.1) does not support ``tf_prefix``.
     """
     robot = defusedxml.ElementTree.fromstring(urdf, forbid_dtd=False)
     for path, attribute in (("link", "name"), ("joint/parent", "link"), ("joint/child", "link")):

@@ -1,4 +1,4 @@
-"""Gazebo's plugins as drives and sensors, with the plugins' own defaults (gazebo_plugins 2.9)."""
+"""Reads drives and sensors from Gazebo plugins, with the plugins' defaults (gazebo_plugins 2.9)."""
 
 import math
 from dataclasses import dataclass, field
@@ -25,17 +25,17 @@ from sim_bridge.sensors.registry import BODY_SENSORS, SENSORS
 
 ODOMETRY_SOURCES = ("encoder", "world", "gyro")
 DEFAULT_SOURCE = "world"
-# They tell Gazebo what is true here anyhow.
+# Plugins whose work is done here without them: ground truth is always published.
 REDUNDANT_PLUGINS = {"gazebo_ros_p3d"}
-# Variances of z, roll and pitch that odometry does not measure.
+# Variances of z, roll and pitch, which odometry does not measure.
 UNMEASURED = (1e12, 1e12, 1e12)
-# What Kobuki's plugin says of orientation and turn rates, about x, y and z.
+# Variances that Kobuki's plugin publishes for orientation and turn rates, about x, y and z.
 KOBUKI_IMU_VARIANCES = (1e6, 1e6, 0.05)
 
 
 @dataclass
 class PluginProfiles:
-    """What the plugins of a robot add to its parts; ``namespace`` is that of the drive."""
+    """Drive and sensors that the plugins of a robot define; ``namespace`` is that of the drive."""
 
     drive: Optional[DriveProfile] = None
     odometry: OdometryProfile = OdometryProfile()
@@ -45,51 +45,53 @@ class PluginProfiles:
     warnings: List[str] = field(default_factory=list)
 
 
-def read_plugins(structure: RobotStructure, blocks: GazeboElements) -> PluginProfiles:
-    """Drives first, as the namespace is theirs; a robot without a laser sees by its depth camera.
+def read_plugins(structure: RobotStructure, elements: GazeboElements) -> PluginProfiles:
+    """Read all plugins: drives first, since they define the namespace.
 
-    Raises WorldError naming the element.
+    A robot without a laser gets a scan from its depth camera. Raises WorldError naming the element.
     """
-    equipment = PluginProfiles()
-    left_out, not_driving = [], []
-    for plugin in blocks.plugins:
+    profiles = PluginProfiles()
+    unsupported, failed_drives = [], []
+    for plugin in elements.plugins:
         reader = _PLUGINS.get(plugin_name(plugin))
         if reader is None:
-            left_out.append(plugin)
+            unsupported.append(plugin)
             continue
         try:
-            reader(plugin, structure, equipment)
+            reader(plugin, structure, profiles)
         except WorldError as error:
             if reader not in _DRIVES.values():
                 raise
-            not_driving.append(error)
-    if not_driving and equipment.drive is None:
-        raise not_driving[0]
-    equipment.warnings += [f"{error}; left out as Gazebo does" for error in not_driving]
-    for link, sensor in blocks.sensors:
+            failed_drives.append(error)
+    if failed_drives and profiles.drive is None:
+        raise failed_drives[0]
+    profiles.warnings += [f"{error}; ignored, as in Gazebo" for error in failed_drives]
+    for link, sensor in elements.sensors:
         if link not in structure.links:
-            equipment.warnings.append(f"{sensor.place}: there is no link {link!r}, left out as Gazebo does")
+            profiles.warnings.append(f"{sensor.place}: there is no link {link!r}, ignored, as in Gazebo")
             continue
         for plugin in sensor.children("plugin"):
             read = SENSORS.get(plugin_name(plugin))
             if read is not None:
-                equipment.sensors.append(read(_found(plugin, sensor, link, structure, equipment)))
+                profiles.sensors.append(read(_found(plugin, sensor, link, structure, profiles)))
             else:
-                left_out.append(plugin)
-    if not any(isinstance(sensor, LaserProfile) for sensor in equipment.sensors):
-        cameras = [sensor for sensor in equipment.sensors if isinstance(sensor, CameraProfile)]
-        equipment.sensors += [scan_of(camera) for camera in cameras if camera.depth_topic][:1]
-    names = dict.fromkeys(plugin.attribute("filename") for plugin in left_out)
-    equipment.warnings += [f"robot {structure.name}: plugin {name} is left out" for name in names]
-    return equipment
+                unsupported.append(plugin)
+    if not any(isinstance(sensor, LaserProfile) for sensor in profiles.sensors):
+        cameras = [sensor for sensor in profiles.sensors if isinstance(sensor, CameraProfile)]
+        profiles.sensors += [scan_of(camera) for camera in cameras if camera.depth_topic][:1]
+    names = dict.fromkeys(plugin.attribute("filename") for plugin in unsupported)
+    profiles.warnings += [
+        f"robot {structure.name}: plugin {name} is not supported, ignored" for name in names
+    ]
+    return profiles
 
 
-def _read_diff_drive(plugin: Element, structure: RobotStructure, equipment: PluginProfiles) -> None:
+def _read_diff_drive(plugin: Element, structure: RobotStructure, profiles: PluginProfiles) -> None:
     separation = length(plugin, "wheelSeparation", 0.34)
     acceleration = number(plugin, "wheelAcceleration", 0.0)
     joints = [text(plugin, "leftJoint", "left_joint"), text(plugin, "rightJoint", "right_joint")]
-    equipment.namespace = namespace_of(plugin)
-    equipment.drive = _drive(
+    profiles.namespace = namespace_of(plugin)
+    profiles.drive = _drive(
         plugin,
         structure,
         joints,
@@ -100,8 +102,8 @@ def _read_diff_drive(plugin: Element, structure: RobotStructure, equipment: Plug
         max_acceleration=acceleration or math.inf,
         max_turn_acceleration=2.0 * acceleration / separation or math.inf,
     )
-    equipment.odometry = OdometryProfile(
-        _odometry_source(plugin, equipment),
+    profiles.odometry = OdometryProfile(
+        _odometry_source(plugin, profiles),
         text(plugin, "odometryTopic", "odom"),
         text(plugin, "odometryFrame", "odom"),
         text(plugin, "robotBaseFrame", "base_footprint"),
@@ -110,26 +112,26 @@ def _read_diff_drive(plugin: Element, structure: RobotStructure, equipment: Plug
         variances=(1e-5, 1e-5, *UNMEASURED, 1e-3),
     )
     if flag(plugin, "publishWheelJointState", False):
-        equipment.joint_states = JointStateProfile(equipment.drive.joints, equipment.odometry.rate)
+        profiles.joint_states = JointStateProfile(profiles.drive.joints, profiles.odometry.rate)
 
 
-def _odometry_source(plugin: Element, equipment: PluginProfiles) -> str:
-    """As Gazebo's plugin: what it does not know is the default."""
+def _odometry_source(plugin: Element, profiles: PluginProfiles) -> str:
+    """Return the odometry source; like Gazebo's plugin, replace an unknown one by the default."""
     source = text(plugin, "odometrySource", DEFAULT_SOURCE)
     if source in ODOMETRY_SOURCES:
         return source
     sources = ", ".join(ODOMETRY_SOURCES)
-    equipment.warnings.append(
-        f"{plugin.place}: <odometrySource> is none of {sources}: {source!r}, {DEFAULT_SOURCE} is taken"
+    profiles.warnings.append(
+        f"{plugin.place}: <odometrySource> must be one of {sources}, got {source!r}; using {DEFAULT_SOURCE}"
     )
     return DEFAULT_SOURCE
 
 
-def _read_skid_steer(plugin: Element, structure: RobotStructure, equipment: PluginProfiles) -> None:
+def _read_skid_steer(plugin: Element, structure: RobotStructure, profiles: PluginProfiles) -> None:
     sides = ("leftFront", "leftRear", "rightFront", "rightRear")
     defaults = ("left_front", "left_rear", "right_front", "right_rear")
-    equipment.namespace = namespace_of(plugin)
-    equipment.drive = _drive(
+    profiles.namespace = namespace_of(plugin)
+    profiles.drive = _drive(
         plugin,
         structure,
         [text(plugin, f"{side}Joint", f"{name}_joint") for side, name in zip(sides, defaults)],
@@ -138,7 +140,7 @@ def _read_skid_steer(plugin: Element, structure: RobotStructure, equipment: Plug
         torque=length(plugin, "torque", 5.0),
         command_topics=(text(plugin, "commandTopic", "cmd_vel"),),
     )
-    equipment.odometry = OdometryProfile(
+    profiles.odometry = OdometryProfile(
         "world",
         text(plugin, "odometryTopic", "odom"),
         text(plugin, "odometryFrame", "odom"),
@@ -154,10 +156,10 @@ def _read_skid_steer(plugin: Element, structure: RobotStructure, equipment: Plug
     )
 
 
-def _read_kobuki(plugin: Element, structure: RobotStructure, equipment: PluginProfiles) -> None:
+def _read_kobuki(plugin: Element, structure: RobotStructure, profiles: PluginProfiles) -> None:
     joints = [plugin.required(f"{side}_wheel_joint_name").text for side in ("left", "right")]
-    equipment.namespace = namespace_of(plugin)
-    equipment.drive = _drive(
+    profiles.namespace = namespace_of(plugin)
+    profiles.drive = _drive(
         plugin,
         structure,
         joints,
@@ -167,9 +169,9 @@ def _read_kobuki(plugin: Element, structure: RobotStructure, equipment: PluginPr
         command_topics=("mobile_base/commands/velocity", "cmd_vel"),
         command_timeout=plugin.required("velocity_command_timeout").lengths(1)[0],
     )
-    equipment.odometry = OdometryProfile("gyro", sends_transform=plugin.flag("publish_tf"))
-    equipment.joint_states = JointStateProfile(equipment.drive.joints)
-    equipment.sensors.append(
+    profiles.odometry = OdometryProfile("gyro", sends_transform=plugin.flag("publish_tf"))
+    profiles.joint_states = JointStateProfile(profiles.drive.joints)
+    profiles.sensors.append(
         ImuProfile(
             "mobile_base/sensors/imu_data",
             "base_link",
@@ -178,40 +180,40 @@ def _read_kobuki(plugin: Element, structure: RobotStructure, equipment: PluginPr
             angular_velocity_variances=KOBUKI_IMU_VARIANCES,
         )
     )
-    hubs = [structure.pose_in_base(structure.joints[name].child)[:3, 3] for name in equipment.drive.joints]
+    hubs = [structure.pose_in_base(structure.joints[name].child)[:3, 3] for name in profiles.drive.joints]
     threshold = length(plugin, "cliff_detection_threshold", 0.04)
-    equipment.sensors.append(KobukiProfile(np.array(hubs), equipment.drive.wheel_radius, threshold))
+    profiles.sensors.append(KobukiProfile(np.array(hubs), profiles.drive.wheel_radius, threshold))
 
 
-def _read_joint_states(plugin: Element, structure: RobotStructure, equipment: PluginProfiles) -> None:
-    """Gazebo's plugin fails on a joint that is not there; so does this."""
+def _read_joint_states(plugin: Element, structure: RobotStructure, profiles: PluginProfiles) -> None:
+    """Read the published joints; like Gazebo's plugin, fail on one that does not exist."""
     names = plugin.required("jointName").text.replace(",", " ").split()
     for name in names:
         if name not in structure.joints:
             raise plugin.error(f"<jointName>: the robot has no joint {name!r}")
     rate = number(plugin, "updateRate", 100.0) or None
-    equipment.joint_states = JointStateProfile(tuple(names), rate)
+    profiles.joint_states = JointStateProfile(tuple(names), rate)
 
 
-def _read_body_sensor(plugin: Element, structure: RobotStructure, equipment: PluginProfiles) -> None:
-    """A plugin below the model that names its link."""
+def _read_body_sensor(plugin: Element, structure: RobotStructure, profiles: PluginProfiles) -> None:
+    """Read a sensor plugin of the model, which names its link."""
     link = plugin.required("bodyName").text
     if link not in structure.links:
-        equipment.warnings.append(f"{plugin.place}: <bodyName>: there is no link {link!r}, left out")
+        profiles.warnings.append(f"{plugin.place}: <bodyName>: there is no link {link!r}, ignored")
         return
-    found = SensorElement(plugin, plugin, link, structure.pose_in_base(link), equipment.namespace)
-    equipment.sensors.append(SENSORS[plugin_name(plugin)](found))
+    found = SensorElement(plugin, plugin, link, structure.pose_in_base(link), profiles.namespace)
+    profiles.sensors.append(SENSORS[plugin_name(plugin)](found))
 
 
 def _found(
-    plugin: Element, sensor: Element, link: str, structure: RobotStructure, equipment: PluginProfiles
+    plugin: Element, sensor: Element, link: str, structure: RobotStructure, profiles: PluginProfiles
 ) -> SensorElement:
     pose = sensor.raw_pose()
     in_base = structure.pose_in_base(link) @ (IDENTITY if pose is None else pose)
-    return SensorElement(plugin, sensor, link, in_base, equipment.namespace)
+    return SensorElement(plugin, sensor, link, in_base, profiles.namespace)
 
 
-# One that fails does not matter where another drives the robot.
+# One that fails is ignored if another one drives the robot.
 _DRIVES: Dict[str, Callable[[Element, RobotStructure, PluginProfiles], None]] = {
     "gazebo_ros_diff_drive": _read_diff_drive,
     "gazebo_ros_skid_steer_drive": _read_skid_steer,
@@ -226,9 +228,10 @@ _PLUGINS: Dict[str, Callable[[Element, RobotStructure, PluginProfiles], None]] =
 
 
 def _drive(plugin: Element, structure: RobotStructure, joints: List[str], **values) -> DriveProfile:
-    """A drive; which wheel is on which side, its place says: names and ``legacyMode`` often say otherwise.
+    """Return a drive; which wheels are on the left is decided by their positions.
 
-    What Gazebo's plugins cannot say, ours may: limits and a time-out.
+    The plugins' names of the sides, and ``legacyMode``, are often wrong. Limits and a command time-out are
+    extensions of the plugins' parameters.
     """
     for name in joints:
         if name not in structure.joints:

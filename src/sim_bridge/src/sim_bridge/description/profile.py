@@ -1,4 +1,4 @@
-"""What a robot is made of and can do, as data."""
+"""Robot profiles: parts, drive and sensors."""
 
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -15,7 +15,7 @@ Spec = TypeVar("Spec")
 
 @dataclass(frozen=True)
 class JointStateProfile:
-    """Joints that are told; ``rate`` in hertz, None for the simulation's."""
+    """Joints whose states are published, on ``topic``, at ``rate`` [Hz]; None for the simulation's rate."""
 
     joints: Tuple[str, ...]
     rate: Optional[float] = None
@@ -24,9 +24,18 @@ class JointStateProfile:
 
 @dataclass(frozen=True, eq=False)
 class RobotProfile:
-    """A robot: its parts, its drive and its sensors.
+    """A robot.
 
-    ``namespace``: that its description asks for. ``warnings``: what the description holds that is left out.
+    Attributes:
+        name: Name in its description.
+        text: The URDF or SDF text that it was read from.
+        model: Its rigid parts.
+        drive: Its drive.
+        odometry: Its odometry.
+        sensors: Specifications of its sensors.
+        joint_states: Published joints, if any.
+        namespace: Namespace of its topics, as its description requests.
+        warnings: A sentence for each kind of content of the description that is ignored.
     """
 
     name: str
@@ -40,24 +49,24 @@ class RobotProfile:
     warnings: Tuple[str, ...] = field(default=())
 
     def description(self) -> str:
-        """The text, URDF or SDF, that the robot was read from."""
+        """Return the URDF or SDF text that the robot was read from."""
         return self.text
 
     def sensors_of(self, kind: Type[Spec]) -> Tuple[Spec, ...]:
-        """Those of the sensors whose specs are of a class."""
+        """Return the sensor specifications of a class."""
         return tuple(sensor for sensor in self.sensors if isinstance(sensor, kind))
 
     @cached_property
     def scanner(self) -> str:
-        """The name that the first range finder tells its scans by; empty if there is none."""
+        """Sensor name of the first range finder; empty if there is none."""
         return next((laser.topic for laser in self.sensors_of(LaserProfile)), "")
 
     @property
     def laser(self) -> LaserProfile:
-        """The first range finder."""
+        """Specification of the first range finder."""
         return self.sensors_of(LaserProfile)[0]
 
     @property
     def radius(self) -> float:
-        """Of the circle about the base's origin that holds the robot, metres."""
+        """Radius of the circle around the base's origin that contains the robot [m]."""
         return self.model.radius

@@ -1,4 +1,4 @@
-"""Whole robots from the texts that describe them."""
+"""Reads robot profiles from URDF and SDF."""
 
 import xml.etree.ElementTree as ElementTree
 from typing import List, Tuple
@@ -16,25 +16,39 @@ from sim_bridge.world import Body, DrivenModel, World
 
 
 def read_urdf_robot(text: str, where: str, find_file: FindFile = no_file) -> RobotProfile:
-    """The robot of a URDF text; ``where`` names the text in errors.
+    """Read a robot from a URDF text.
 
-    Raises RobotError; NoDriveError if nothing drives it.
+    Args:
+        text: The URDF.
+        where: Names the text in errors.
+        find_file: Finds the files of package:// and model:// URIs.
+
+    Raises:
+        NoDriveError: No plugin drives it.
+        RobotError: The description cannot be used.
     """
-    structure, blocks, warnings = read_urdf(text, where, find_file)
-    return _profile(structure, blocks, warnings, text, where)
+    structure, elements, warnings = read_urdf(text, where, find_file)
+    return _profile(structure, elements, warnings, text, where)
 
 
 def read_sdf_robot(model: DrivenModel) -> Tuple[RobotProfile, np.ndarray]:
-    """The robot of a model in a world, and where its base stands, (4, 4). Raises RobotError."""
-    structure, blocks, base_in_world = read_sdf(model)
+    """Return the robot of a model in a world, and its base's pose (4, 4). Raises RobotError."""
+    structure, elements, base_in_world = read_sdf(model)
     text = ElementTree.tostring(model.element.xml, encoding="unicode")
-    return _profile(structure, blocks, [], text, model.element.file), base_in_world
+    return _profile(structure, elements, [], text, model.element.file), base_in_world
 
 
 def read_prop(text: str, name: str, pose: np.ndarray, find_file: FindFile = no_file) -> World:
-    """A world of the one thing that a URDF text describes, called ``name``; its joints are held as they are.
+    """Return a world with one model: the object that a URDF text describes, with its joints fixed.
 
-    Raises RobotError.
+    Args:
+        text: The URDF.
+        name: Name of the model.
+        pose: Pose (4, 4) in the world.
+        find_file: Finds the files of package:// and model:// URIs.
+
+    Raises:
+        RobotError: The description cannot be used.
     """
     structure, _, warnings = read_urdf(text, name, find_file)
     base = structure.assemble(()).base
@@ -43,23 +57,23 @@ def read_prop(text: str, name: str, pose: np.ndarray, find_file: FindFile = no_f
 
 
 def _profile(
-    structure: RobotStructure, blocks: GazeboElements, warnings: List[str], text: str, where: str
+    structure: RobotStructure, elements: GazeboElements, warnings: List[str], text: str, where: str
 ) -> RobotProfile:
     try:
-        equipment = read_plugins(structure, blocks)
+        profiles = read_plugins(structure, elements)
     except WorldError as error:
         raise RobotError(str(error)) from None
-    if equipment.drive is None:
+    if profiles.drive is None:
         plugins = ", ".join(f"lib{name}.so" for name in DRIVES)
         raise NoDriveError(f"{where}: robot {structure.name} has no drive (a <gazebo> plugin of {plugins})")
     return RobotProfile(
         name=structure.name,
         text=text,
-        model=structure.assemble(equipment.drive.joints),
-        drive=equipment.drive,
-        odometry=equipment.odometry,
-        sensors=tuple(equipment.sensors),
-        joint_states=equipment.joint_states,
-        namespace=equipment.namespace,
-        warnings=(*warnings, *equipment.warnings),
+        model=structure.assemble(profiles.drive.joints),
+        drive=profiles.drive,
+        odometry=profiles.odometry,
+        sensors=tuple(profiles.sensors),
+        joint_states=profiles.joint_states,
+        namespace=profiles.namespace,
+        warnings=(*warnings, *profiles.warnings),
     )

@@ -1,4 +1,4 @@
-"""A driven model of a world as links, joints and blocks."""
+"""Reads the structure of a robot from a driven SDF model."""
 
 from typing import List, Tuple
 
@@ -6,19 +6,19 @@ import numpy as np
 
 from sim_bridge.description.structure import GazeboElements, RobotJoint, RobotLink, RobotStructure
 from sim_bridge.geometry.pose3 import inverse, transform_points
-from sim_bridge.geometry.shapes import outline
+from sim_bridge.geometry.shapes import outline_points
 from sim_bridge.world import Body, DrivenModel
 
 
 def read_sdf(model: DrivenModel) -> Tuple[RobotStructure, GazeboElements, np.ndarray]:
-    """The structure of a robot, its blocks, and where its root link stands in the world, (4, 4).
+    """Return a robot's structure, its Gazebo elements, and the pose (4, 4) of its root link in the world.
 
     Raises RobotError.
     """
-    blocks = GazeboElements()
-    blocks.add(model.element, "")
+    elements = GazeboElements()
+    elements.add(model.element, "")
     for link in model.element.children("link"):
-        blocks.add(link, link.name)
+        elements.add(link, link.name)
     poses = {body.name: body.pose_in_world for body in model.bodies}
     joints = [
         RobotJoint(
@@ -32,11 +32,11 @@ def read_sdf(model: DrivenModel) -> Tuple[RobotStructure, GazeboElements, np.nda
         if joint.parent
     ]
     structure = RobotStructure(model.name, [_link(body) for body in model.bodies], joints)
-    return structure, blocks, poses[f"{model.name}::{structure.root}"]
+    return structure, elements, poses[f"{model.name}::{structure.root}"]
 
 
 def _inner(name: str) -> str:
-    """A name within its model."""
+    """Return a name without its model's."""
     return name.split("::", 1)[1]
 
 
@@ -48,9 +48,9 @@ def _link(body: Body) -> RobotLink:
 
 
 def _moments_of_a_box(body: Body, mass: float) -> np.ndarray:
-    """Of a box as large as the link's solid parts, kg m^2."""
+    """Return the moments (3,) of the bounding box of a link's collisions [kg m^2]."""
     points: List[np.ndarray] = [
-        transform_points(part.pose_in_body, outline(part.shape)) for part in body.collisions
+        transform_points(part.pose_in_body, outline_points(part.shape)) for part in body.collisions
     ]
     if not points:
         return np.zeros(3)

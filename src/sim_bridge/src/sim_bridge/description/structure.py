@@ -1,4 +1,4 @@
-"""Links and joints, and the few rigid parts that physics needs of them: a base and its driven wheels."""
+"""The link tree of a robot, and the rigid parts that physics needs: a base and its driven wheels."""
 
 from dataclasses import dataclass, field
 from typing import Dict, Iterable, List, Sequence, Tuple
@@ -7,16 +7,21 @@ import numpy as np
 
 from sim_bridge.errors import RobotError
 from sim_bridge.geometry.pose3 import IDENTITY, transform_points
-from sim_bridge.geometry.shapes import outline
+from sim_bridge.geometry.shapes import outline_points
 from sim_bridge.sdf.element import Element
 from sim_bridge.world import Collision
 
 
 @dataclass(frozen=True, eq=False)
 class RobotLink:
-    """``mass`` in kg, 0 if none is given; ``centre`` (3,) of it in the link's frame.
+    """A link of a description.
 
-    ``inertia``: (3, 3), kg m^2, about the centre along the axes of the link's frame.
+    Attributes:
+        name: Its name.
+        mass: Mass [kg]; 0 if none is given.
+        centre: Centre of mass (3,) in the link frame [m].
+        inertia: Inertia matrix (3, 3) about the centre, along the axes of the link frame [kg m^2].
+        collisions: Solid parts.
     """
 
     name: str
@@ -28,7 +33,15 @@ class RobotLink:
 
 @dataclass(frozen=True, eq=False)
 class RobotJoint:
-    """``child_in_parent``: (4, 4) at the joint's zero; ``axis``: (3,), in the child's frame."""
+    """A joint of a description.
+
+    Attributes:
+        name: Its name.
+        parent: Name of the parent link.
+        child: Name of the child link.
+        child_in_parent: Pose (4, 4) of the child in the parent at position 0.
+        axis: Unit vector (3,) in the child's frame.
+    """
 
     name: str
     parent: str
@@ -39,10 +52,14 @@ class RobotJoint:
 
 @dataclass(frozen=True, eq=False)
 class RigidPart:
-    """Links that are fixed to each other; ``name``: of the first of them.
+    """Links that are fixed to each other.
 
-    ``mass`` in kg, ``centre_of_mass`` (3,) in the part's frame, ``inertia`` (3,) about it along the axes of
-    that frame, kg m^2.
+    Attributes:
+        name: Name of the first link, whose frame is the part's.
+        mass: Mass [kg].
+        centre_of_mass: Centre of mass (3,) [m].
+        inertia: Moments of inertia (3,) about it, along the axes of the part's frame [kg m^2].
+        collisions: Solid parts.
     """
 
     name: str
@@ -54,7 +71,7 @@ class RigidPart:
 
 @dataclass(frozen=True, eq=False)
 class Wheel:
-    """A part that turns about ``axis`` (3,), mounted at ``origin_in_base`` (4, 4)."""
+    """A part that rotates about ``axis`` (3,), with its frame at ``origin_in_base`` (4, 4)."""
 
     part: RigidPart
     origin_in_base: np.ndarray
@@ -63,30 +80,41 @@ class Wheel:
 
 @dataclass(frozen=True, eq=False)
 class RobotModel:
-    """The base in its root frame, and the driven wheels by the names of their joints."""
+    """The base of a robot, and its driven wheels by joint name."""
 
     base: RigidPart
     wheels: Dict[str, Wheel]
 
     @property
     def radius(self) -> float:
-        """Of the circle about the base's origin that holds all solid parts, metres."""
+        """Radius of the circle around the base's origin that contains all collisions [m]."""
         return max((float(np.hypot(*point[:2])) for point in self._outline()), default=0.0)
 
     @property
     def lowest(self) -> float:
-        """The height in the base's frame of what touches a floor, metres."""
+        """Height of the lowest point in the base frame [m]."""
         return min((float(point[2]) for point in self._outline()), default=0.0)
 
     def _outline(self) -> Iterable[np.ndarray]:
         wheels = [(wheel.origin_in_base, wheel.part) for wheel in self.wheels.values()]
         for part_in_base, part in [(IDENTITY, self.base), *wheels]:
             for collision in part.collisions:
-                yield from transform_points(part_in_base @ collision.pose_in_body, outline(collision.shape))
+                yield from transform_points(
+                    part_in_base @ collision.pose_in_body, outline_points(collision.shape)
+                )
 
 
 class RobotStructure:
-    """The tree of a robot's links. Raises RobotError if it is none; ``name`` of the robot is for errors."""
+    """The link tree of a robot.
+
+    Args:
+        name: Name of the robot, for errors.
+        links: Its links.
+        joints: Its joints.
+
+    Raises:
+        RobotError: The links and joints are not one tree.
+    """
 
     def __init__(self, name: str, links: Sequence[RobotLink], joints: Sequence[RobotJoint]):
         self.name = name
@@ -101,23 +129,23 @@ class RobotStructure:
         if len(roots) != 1:
             raise RobotError(f"robot {name}: expected one root link, got {', '.join(roots) or 'none'}")
         self.root = roots[0]
-        self._check_that_all_hang_together()
+        self._check_for_loops()
 
-    def _check_that_all_hang_together(self) -> None:
-        """The ways up from all links end at the root, so that none goes round for ever."""
+    def _check_for_loops(self) -> None:
+        """Check that the chain of parents of each link ends at the root."""
         reached = {self.root}
         for link in self.links:
-            way: List[str] = []
-            while link not in reached and link not in way:
-                way.append(link)
+            chain: List[str] = []
+            while link not in reached and link not in chain:
+                chain.append(link)
                 link = self._from_child[link].parent
             if link not in reached:
-                joints = ", ".join(self._from_child[each].name for each in way[way.index(link) :])
-                raise RobotError(f"robot {self.name}: these joints go round in a circle: {joints}")
-            reached.update(way)
+                joints = ", ".join(self._from_child[each].name for each in chain[chain.index(link) :])
+                raise RobotError(f"robot {self.name}: these joints form a loop: {joints}")
+            reached.update(chain)
 
     def pose_in_base(self, link: str) -> np.ndarray:
-        """Where a link is, (4, 4) in the root's frame, with all joints at zero. Raises RobotError."""
+        """Return a link's pose (4, 4) in the root frame with all joints at 0. Raises RobotError."""
         if link not in self.links:
             raise RobotError(f"robot {self.name}: no link named {link!r}")
         in_base = IDENTITY
@@ -128,9 +156,9 @@ class RobotStructure:
         return in_base
 
     def assemble(self, driven: Iterable[str]) -> RobotModel:
-        """The base and the wheels on the joints ``driven``; all other joints are held as they are.
+        """Return the base and the wheels on the joints ``driven``; all other joints are treated as fixed.
 
-        Raises RobotError if one of the joints is not there.
+        Raises RobotError if one of the joints does not exist.
         """
         wheel_joints = [self._joint(name) for name in driven]
         wheels = {
@@ -144,13 +172,13 @@ class RobotStructure:
     def _joint(self, name: str) -> RobotJoint:
         if name not in self.joints:
             raise RobotError(
-                f"robot {self.name}: its drive names the joint {name!r}, which is not there "
+                f"robot {self.name}: its drive names the joint {name!r}, which does not exist "
                 f"(joints: {', '.join(self.joints) or 'none'})"
             )
         return self.joints[name]
 
     def _part(self, first: str, wheel_joints: Sequence[RobotJoint]) -> RigidPart:
-        """All links that hang on ``first`` without a driven wheel between."""
+        """Merge ``first`` with all links below it, up to the driven wheels."""
         fixed: List[Tuple[RobotLink, np.ndarray]] = [(self.links[first], IDENTITY)]
         for link, link_in_part in fixed:
             for joint in self._from_child.values():
@@ -159,11 +187,11 @@ class RobotStructure:
         return self._merged(fixed)
 
     def _merged(self, links: Sequence[Tuple[RobotLink, np.ndarray]]) -> RigidPart:
-        """Masses add up, inertias by the parallel axis theorem."""
+        """Merge links into one part; inertias are added by the parallel axis theorem."""
         name = links[0][0].name
         mass = sum(link.mass for link, _ in links)
         if mass <= 0.0:
-            raise RobotError(f"robot {self.name}: link {name}: a part that moves needs a mass")
+            raise RobotError(f"robot {self.name}: link {name}: a moving part needs a mass")
         centres = [transform_points(pose, link.centre[None])[0] for link, pose in links]
         centre = np.average(centres, axis=0, weights=[link.mass for link, _ in links])
         total = np.zeros(3)
@@ -181,12 +209,12 @@ class RobotStructure:
 
 @dataclass
 class GazeboElements:
-    """<plugin> elements of a model, and <sensor> elements, each with the link that it is fixed to."""
+    """<plugin> elements of a model, and <sensor> elements with the names of their links."""
 
     plugins: List[Element] = field(default_factory=list)
     sensors: List[Tuple[str, Element]] = field(default_factory=list)
 
     def add(self, parent: Element, link: str) -> None:
-        """Takes what is directly below an element: <gazebo> of URDF, <model> or <link> of SDF."""
+        """Add the direct children of an element: <gazebo> in URDF, <model> or <link> in SDF."""
         self.plugins.extend(parent.children("plugin"))
         self.sensors.extend((link, sensor) for sensor in parent.children("sensor"))

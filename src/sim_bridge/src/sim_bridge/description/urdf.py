@@ -1,4 +1,4 @@
-"""URDF text as links, joints and <gazebo> blocks."""
+"""URDF text as links, joints and <gazebo> elements."""
 
 from pathlib import Path
 from typing import Callable, List, Optional, Tuple
@@ -20,10 +20,18 @@ FindFile = Callable[[str], Optional[Path]]
 
 
 def read_urdf(text: str, where: str, find_file: FindFile) -> Tuple[RobotStructure, GazeboElements, List[str]]:
-    """The structure of a robot, its <gazebo> blocks, and in words what had to be left out.
+    """Read the structure of a robot from a URDF text.
 
-    ``where`` names the text in errors; ``find_file`` finds the files of package:// and model:// names.
-    Raises RobotError.
+    Args:
+        text: The URDF.
+        where: Names the text in errors.
+        find_file: Finds the files of package:// and model:// URIs.
+
+    Returns:
+        The link tree, the <gazebo> elements, and a warning for each mesh that is ignored.
+
+    Raises:
+        RobotError: The description cannot be used.
     """
     robot = _parse(text, where)
     reader = _Reader(find_file)
@@ -31,12 +39,12 @@ def read_urdf(text: str, where: str, find_file: FindFile) -> Tuple[RobotStructur
         links = [reader.link(link) for link in robot.children("link")]
         joints = [_joint(joint) for joint in robot.children("joint")]
         structure = RobotStructure(robot.name or where, links, joints)
-        blocks = GazeboElements()
+        elements = GazeboElements()
         for gazebo in robot.children("gazebo"):
-            blocks.add(gazebo, gazebo.attribute("reference"))
+            elements.add(gazebo, gazebo.attribute("reference"))
     except WorldError as error:
         raise RobotError(str(error)) from None
-    return structure, blocks, reader.warnings
+    return structure, elements, reader.warnings
 
 
 def _parse(text: str, where: str) -> Element:
@@ -52,7 +60,7 @@ def _parse(text: str, where: str) -> Element:
 
 
 class _Reader:
-    """Reads links; remembers what they name that is not there."""
+    """Reads links and collects warnings about missing files."""
 
     def __init__(self, find_file: FindFile):
         self.warnings: List[str] = []
@@ -92,7 +100,7 @@ class _Reader:
         name = mesh.attribute("filename")
         path = self._find_file(name)
         if path is None:
-            self.warnings.append(f"{mesh.place}: {name} not found, left out")
+            self.warnings.append(f"{mesh.place}: {name} not found, ignored")
             return None
         x, y, z = mesh.attribute_numbers("scale", 3, (1.0, 1.0, 1.0))
         return load_mesh(MeshFile(path, (x, y, z)))
@@ -109,7 +117,7 @@ def _joint(joint: Element) -> RobotJoint:
 
 
 def _axis(joint: Element) -> np.ndarray:
-    """(3,); what a fixed joint says of it means nothing."""
+    """Return the axis (3,); that of a fixed joint is ignored."""
     axis = joint.child("axis")
     if axis is None or joint.attribute("type") == "fixed":
         return np.array((1.0, 0.0, 0.0))
@@ -121,14 +129,14 @@ def _axis(joint: Element) -> np.ndarray:
 
 
 def _origin(element: Element) -> np.ndarray:
-    """The pose (4, 4) of an element's <origin>; identity if it has none."""
+    """Return the pose (4, 4) of an element's <origin>, by default the identity."""
     origin = element.child("origin")
     if origin is None:
         return IDENTITY
     zeros = (0.0, 0.0, 0.0)
     xyz, rpy = origin.attribute_numbers("xyz", 3, zeros), origin.attribute_numbers("rpy", 3, zeros)
     if not is_within(MAX_COORDINATE, *xyz, *rpy):
-        raise origin.error(f"nothing can be there, got {origin.attribute('xyz')!r}")
+        raise origin.error(f"coordinates must be within {MAX_COORDINATE:g}, got {origin.attribute('xyz')!r}")
     return pose3(*xyz, *rpy)
 
 
@@ -141,5 +149,5 @@ def _inertia(element: Element) -> np.ndarray:
 
 
 def no_file(_name: str) -> Optional[Path]:
-    """Finds no file at all."""
+    """Find no file (the default of ``find_file``)."""
     return None

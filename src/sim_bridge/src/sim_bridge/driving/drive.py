@@ -6,31 +6,49 @@ from typing import Protocol, Tuple
 
 from planar import Twist2
 
-# Times a second that a base sets its motors; Kobuki's tells its odometry as often.
+# Rate at which a base sets its motors [Hz]; Kobuki's odometry has the same.
 BASE_RATE = 50
 
 
 class WheelDrive(Protocol):
-    """A drive, or what stands before one: commanded now and then, asked each time that the motors are set."""
+    """Contract of a drive and of its wrappers: turns velocity commands into wheel speeds."""
 
     def command(self, twist: Twist2) -> None:
-        """Takes a new command; one that is not finite stops the robot."""
+        """Set the velocity command; one that is not finite stops the robot."""
 
     def switch(self, on: bool) -> None:
-        """Without power the motors brake and no command is heard."""
+        """Switch motor power; without it the motors brake and commands are ignored."""
 
     def halt(self) -> None:
-        """Forgets the command and stands still at once."""
+        """Discard the command and stop at once."""
 
     def wheel_speeds(self, seconds: float) -> Tuple[float, float]:
-        """Speeds of the left and right wheels, rad/s, after ``seconds`` more."""
+        """Advance the drive and return the target wheel speeds.
+
+        Args:
+            seconds: Time since the last call [s].
+
+        Returns:
+            Speeds of the left and of the right wheels [rad/s].
+        """
 
 
 @dataclass(frozen=True)
 class DriveProfile:
-    """Driven wheels on both sides: radius and separation in metres, torque in N m, limits in SI units.
+    """Parameters of a drive with driven wheels on both sides.
 
-    The robot stops when no command has come for ``command_timeout`` seconds.
+    Attributes:
+        left_joints: Joints of the wheels on the left.
+        right_joints: Joints of the wheels on the right.
+        wheel_radius: Radius of the wheels [m].
+        wheel_separation: Distance between left and right wheels [m].
+        torque: Largest torque of each motor [N m].
+        command_topics: Topics of velocity commands.
+        max_speed: Largest speed [m/s].
+        max_turn_rate: Largest turn rate [rad/s].
+        max_acceleration: Largest acceleration [m/s^2].
+        max_turn_acceleration: Largest angular acceleration [rad/s^2].
+        command_timeout: Time without a command after which the robot stops [s].
     """
 
     left_joints: Tuple[str, ...]
@@ -47,17 +65,17 @@ class DriveProfile:
 
     @property
     def joints(self) -> Tuple[str, ...]:
-        """Of all driven wheels, those on the left first."""
+        """Joints of all driven wheels, those on the left first."""
         return self.left_joints + self.right_joints
 
 
 class RampedDrive:
-    """Turns the last command into speeds of the wheels, as the base's own controller does."""
+    """The controller of a base: limits speed and acceleration and stops after the command time-out."""
 
     def __init__(self, profile: DriveProfile):
         self._profile = profile
         self._target = Twist2()
-        # What is set now, as plain numbers: they change before each step of physics.
+        # Present velocities, as plain floats: they change at each update.
         self._v = self._omega = 0.0
         self._speeds = (0.0, 0.0)
         self._age = 0.0
@@ -92,10 +110,10 @@ class RampedDrive:
         limits = self._profile
         self._v = _approach(self._v, self._target.v, limits.max_acceleration * seconds)
         self._omega = _approach(self._omega, self._target.omega, limits.max_turn_acceleration * seconds)
-        outward = self._omega * limits.wheel_separation / 2.0
+        rim_speed = self._omega * limits.wheel_separation / 2.0
         self._speeds = (
-            (self._v - outward) / limits.wheel_radius,
-            (self._v + outward) / limits.wheel_radius,
+            (self._v - rim_speed) / limits.wheel_radius,
+            (self._v + rim_speed) / limits.wheel_radius,
         )
 
 

@@ -1,4 +1,4 @@
-"""Which of several sources of velocity drives a robot (yocs_cmd_vel_mux), and how fast it may change."""
+"""Velocity multiplexer (yocs_cmd_vel_mux) and velocity smoother (yocs_velocity_smoother)."""
 
 import math
 from dataclasses import dataclass
@@ -8,13 +8,13 @@ from planar import SettingsError, Twist2
 from planar.config.yaml_table import Table, parse_table, read_table
 
 IDLE = "idle"
-# Seconds without a command after which the smoother brakes.
-SILENCE = 0.5
+# Time without a command after which the smoother brakes [s].
+INPUT_TIMEOUT = 0.5
 
 
 @dataclass(frozen=True)
 class MuxInput:
-    """A source; the one with the highest ``priority`` drives, until it is silent for ``timeout`` seconds."""
+    """An input of the multiplexer: its name, topic, time-out [s] and priority (the highest wins)."""
 
     name: str
     topic: str
@@ -22,7 +22,7 @@ class MuxInput:
     priority: int
 
 
-# turtlebot_bringup's mux.yaml.
+# As in turtlebot_bringup's mux.yaml.
 TURTLEBOT_INPUTS: Tuple[MuxInput, ...] = (
     MuxInput("Safe reactive controller", "input/safety_controller", 0.2, 10),
     MuxInput("Teleoperation", "input/teleop", 1.0, 7),
@@ -32,12 +32,12 @@ TURTLEBOT_INPUTS: Tuple[MuxInput, ...] = (
 
 
 def read_inputs(path) -> Tuple[MuxInput, ...]:
-    """The inputs of a file in the format of yocs_cmd_vel_mux. Raises SettingsError naming file and line."""
+    """Read a file in the format of yocs_cmd_vel_mux. Raises SettingsError naming file and line."""
     return _inputs_of(read_table(path), str(path))
 
 
 def parse_inputs(text: str, source: str) -> Tuple[MuxInput, ...]:
-    """The same of a text, which errors call ``source``."""
+    """Read the same from a text; ``source`` names it in errors."""
     return _inputs_of(parse_table(text, source), source)
 
 
@@ -54,31 +54,41 @@ def _inputs_of(table: Table, source: str) -> Tuple[MuxInput, ...]:
 
 
 class VelocityMux:
-    """Passes on what the most important source says that is not silent."""
+    """Forwards the commands of the input with the highest priority that has not timed out."""
 
     def __init__(self, inputs: Sequence[MuxInput]):
         self.inputs = tuple(sorted(inputs, key=lambda one: -one.priority))
-        self._heard: Dict[str, float] = {}
+        self._last_received: Dict[str, float] = {}
 
     def choose(self, now: float, arrived: Mapping[str, Twist2]) -> Optional[Twist2]:
-        """``arrived``: the newest command of each source by its name, since the last call."""
-        self._heard.update(dict.fromkeys(arrived, now))
+        """Return the command to forward, None if there is none.
+
+        Args:
+            now: Time [s].
+            arrived: Newest command of each input, by name, since the last call.
+        """
+        self._last_received.update(dict.fromkeys(arrived, now))
         return arrived.get(self.active(now))
 
     def active(self, now: float) -> str:
-        """The name of the source that drives, or ``idle``."""
+        """Return the name of the active input, or ``idle``."""
         for one in self.inputs:
-            heard = self._heard.get(one.name)
-            if heard is not None and 0.0 <= now - heard < one.timeout:
+            received = self._last_received.get(one.name)
+            if received is not None and 0.0 <= now - received < one.timeout:
                 return one.name
         return IDLE
 
 
 @dataclass(frozen=True)
 class VelocityLimits:
-    """Of speeds, m/s and rad/s, and accelerations; to brake, ``decel_factor`` times as much is allowed.
+    """Limits of the smoother, by default those of turtlebot_bringup; named as in yocs_velocity_smoother.
 
-    The defaults are those of turtlebot_bringup.
+    Attributes:
+        speed_lim_v: Speed [m/s].
+        speed_lim_w: Turn rate [rad/s].
+        accel_lim_v: Acceleration [m/s^2].
+        accel_lim_w: Angular acceleration [rad/s^2].
+        decel_factor: Ratio of the deceleration limits to the acceleration limits.
     """
 
     speed_lim_v: float = 0.8
@@ -89,37 +99,41 @@ class VelocityLimits:
 
 
 class VelocitySmoother:
-    """Leads to the commands that it hears within limits, and to rest after the last (yocs_velocity_smoother).
+    """Limits speed and acceleration of commands, and brakes after the last one (yocs_velocity_smoother).
 
-    Asked at every step of time, so that also after a pause between two commands no velocity jumps.
+    It is updated at every step of time, so that no velocity jumps after a pause between two commands.
     """
 
     def __init__(self, limits: VelocityLimits = VelocityLimits()):
         self._limits = limits
         self._last = Twist2()
         self._target: Optional[Twist2] = None
-        self._heard_at = self._now = math.inf
+        self._received_at = self._now = math.inf
 
     def set_target(self, command: Twist2, now: float) -> None:
-        self._target, self._heard_at = command, now
+        """Set the velocity to reach; ``now``: time of its arrival [s]."""
+        self._target, self._received_at = command, now
 
     def command(self, now: float) -> Optional[Twist2]:
-        """What is commanded now; None once nothing is. One that is not finite is passed on."""
+        """Return the smoothed command at the time ``now`` [s], None after the robot has stopped.
+
+        A target that is not finite is passed on as it is.
+        """
         seconds, self._now = now - self._now, now
         if self._target is None:
             return None
         if not self._target.is_finite():
-            told, self._target, self._last = self._target, None, Twist2()
-            return told
-        if seconds < 0.0:  # time has begun anew
-            self._last, self._heard_at, seconds = Twist2(), now, 0.0
-        is_silent = now - self._heard_at > SILENCE
-        target, limits = Twist2() if is_silent else self._target, self._limits
+            target, self._target, self._last = self._target, None, Twist2()
+            return target
+        if seconds < 0.0:  # time was reset
+            self._last, self._received_at, seconds = Twist2(), now, 0.0
+        has_timed_out = now - self._received_at > INPUT_TIMEOUT
+        target, limits = Twist2() if has_timed_out else self._target, self._limits
         self._last = Twist2(
             self._approach(self._last.v, target.v, limits.speed_lim_v, limits.accel_lim_v * seconds),
             self._approach(self._last.omega, target.omega, limits.speed_lim_w, limits.accel_lim_w * seconds),
         )
-        if is_silent and self._last == Twist2():
+        if has_timed_out and self._last == Twist2():
             self._target = None
         return self._last
 

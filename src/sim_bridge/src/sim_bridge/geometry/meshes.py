@@ -1,4 +1,4 @@
-"""Meshes of COLLADA, STL and OBJ files as triangles in metres, kept converted in a cache."""
+"""Loads meshes from COLLADA, STL and OBJ files, with a cache of converted ones."""
 
 import hashlib
 import io
@@ -16,20 +16,30 @@ from planar.geometry.limits import MAX_COORDINATE
 from sim_bridge.errors import WorldError
 from sim_bridge.geometry.shapes import Mesh, MeshFile
 
-# Part of the name of what is cached: to be raised when the conversion changes.
+# Part of the names of cached files; increase it when the conversion changes.
 CACHE_VERSION = 1
 
 
 def cache_folder() -> Path:
-    """Where converted meshes are kept; it may be deleted at any time."""
+    """Return the folder of converted meshes, which may be deleted at any time."""
     root = os.environ.get("XDG_CACHE_HOME") or str(Path("~/.cache").expanduser())
     return Path(root) / "sim_bridge" / "meshes"
 
 
 def load_mesh(file: MeshFile, cache: Optional[Path] = None) -> Mesh:
-    """The triangles of a mesh file; ``cache``: folder of converted meshes, by default that of the user.
+    """Load a mesh file.
 
-    A COLLADA file's unit is honoured; like Gazebo, its up axis is not. Raises WorldError.
+    The unit of a COLLADA file is applied; its up axis is ignored, as in Gazebo.
+
+    Args:
+        file: The file, with scale and submesh.
+        cache: Folder of converted meshes, by default ``cache_folder()``.
+
+    Returns:
+        The triangles, in metres.
+
+    Raises:
+        WorldError: The file cannot be read or holds no triangles.
     """
     try:
         content = read_bytes(file.path)
@@ -43,12 +53,12 @@ def load_mesh(file: MeshFile, cache: Optional[Path] = None) -> Mesh:
         _write(mesh, cached)
     vertices = mesh.vertices * file.scale
     if not np.abs(vertices).max() <= MAX_COORDINATE:
-        raise WorldError(f"{file.path}: scaled by {file.scale} it is larger than anything in a world")
+        raise WorldError(f"{file.path}: scaled by {file.scale} it exceeds {MAX_COORDINATE:g} m")
     return Mesh(vertices, mesh.triangles, mesh.colours)
 
 
 def _resolver(path: Path) -> Any:
-    """Finds what a mesh names, as pictures, with the limits of any file."""
+    """Return a resolver of the files that a mesh refers to, e.g. textures, with our limits on files."""
     from trimesh.resolvers import FilePathResolver
 
     class Resolver(FilePathResolver):
@@ -62,7 +72,7 @@ def _convert(file: MeshFile) -> Mesh:
     import trimesh
 
     path, submesh = file.path, file.submesh
-    # It logs the whole traceback of every picture that is not there.
+    # It logs a whole traceback for each missing texture.
     logging.getLogger("trimesh").setLevel(logging.CRITICAL)
     try:
         by_groups = submesh and path.suffix.lower() == ".obj"
@@ -79,15 +89,15 @@ def _convert(file: MeshFile) -> Mesh:
         ]
         if not chosen:
             raise WorldError(f"{path}: holds no mesh" + (f" named {submesh!r}" if submesh else ""))
-        return _joined(file, [part for part in chosen if hasattr(part, "faces")])
+        return _join(file, [part for part in chosen if hasattr(part, "faces")])
     except WorldError:
         raise
-    except Exception as error:  # the many parsers below trimesh.load share no error class
+    except Exception as error:  # the parsers below trimesh.load share no error class
         raise WorldError(f"{path}: not a readable mesh ({type(error).__name__}: {error})") from None
 
 
-def _joined(file: MeshFile, chosen: Sequence[Any]) -> Mesh:
-    """The parts of a scene that have faces, as one mesh. Raises WorldError if it would be empty."""
+def _join(file: MeshFile, chosen: Sequence[Any]) -> Mesh:
+    """Join parts of a scene into one mesh. Raises WorldError if it would be empty."""
     if not chosen:
         raise WorldError(f"{file.path}: holds no triangles")
     colours = np.vstack([_colours(part) for part in chosen])
@@ -97,15 +107,15 @@ def _joined(file: MeshFile, chosen: Sequence[Any]) -> Mesh:
     triangles = np.vstack([part.faces + offset for part, offset in zip(chosen, offsets)])
     if file.centred:
         vertices = vertices - (vertices.min(axis=0) + vertices.max(axis=0)) / 2.0
-    vertices, first = _without_doubles(vertices)
+    vertices, first = _unique_vertices(vertices)
     mesh = Mesh(vertices, first[triangles].astype(np.int32), colours)
-    if not _is_whole(mesh):
+    if not _is_valid(mesh):
         raise WorldError(f"{file.path}: holds no triangles, or corners that are not three numbers each")
     return mesh
 
 
 def _obj_by_groups(path: Path) -> Any:
-    """An OBJ file whose parts are its objects and groups; trimesh makes them of its materials, or objects."""
+    """Load an OBJ file by objects and groups; trimesh alone splits it by materials or objects."""
     import trimesh
 
     text = re.sub(r"^g ", "o ", read_text(path, errors="replace"), flags=re.MULTILINE)
@@ -114,38 +124,38 @@ def _obj_by_groups(path: Path) -> Any:
     )
 
 
-def _without_doubles(vertices: np.ndarray):
-    """The different vertices, and the index among them of each vertex."""
+def _unique_vertices(vertices: np.ndarray):
+    """Return the distinct vertices, and for each vertex its index among them."""
     unique, first = np.unique(vertices.astype(np.float32), axis=0, return_inverse=True)
     return unique.astype(float), first.reshape(-1)
 
 
 def _colours(part: Any) -> np.ndarray:
-    """One colour (M, 3) for each triangle: of the faces, of the material, or the mean of its picture."""
+    """Return one colour (M, 3) per triangle: of the faces, the material, or the mean of the texture."""
     count = len(part.faces)
     visual = part.visual
     if visual.kind in ("face", "vertex"):
         return np.asarray(visual.face_colors)[:, :3].astype(np.float32) / 255.0
     material = getattr(visual, "material", None)
-    picture = getattr(material, "image", None) or getattr(material, "baseColorTexture", None)
-    if picture is not None:
-        colour = np.asarray(picture.convert("RGB").resize((1, 1))).reshape(3)
+    texture = getattr(material, "image", None) or getattr(material, "baseColorTexture", None)
+    if texture is not None:
+        colour = np.asarray(texture.convert("RGB").resize((1, 1))).reshape(3)
     else:
         colour = np.asarray(getattr(material, "main_color", (179, 179, 179)))[:3]
     return np.tile(colour.astype(np.float32) / 255.0, (count, 1))
 
 
 def _read(cached: Path) -> Optional[Mesh]:
-    """None if there is none, or none that is whole: it is made anew then."""
+    """Return a cached mesh, None if there is no valid one."""
     try:
         arrays = read_arrays(cached)
         mesh = Mesh(arrays["vertices"], arrays["triangles"], arrays["colours"])
     except (OSError, KeyError, ValueError):
         return None
-    return mesh if _is_whole(mesh) else None
+    return mesh if _is_valid(mesh) else None
 
 
-def _is_whole(mesh: Mesh) -> bool:
+def _is_valid(mesh: Mesh) -> bool:
     vertices, triangles, colours = mesh.vertices, mesh.triangles, mesh.colours
     return (
         vertices.dtype == np.float64
@@ -162,11 +172,11 @@ def _is_whole(mesh: Mesh) -> bool:
 
 
 def _write(mesh: Mesh, cached: Path) -> None:
-    """Beside, then renamed; where nothing can be written nothing is kept."""
+    """Write a mesh to the cache, atomically; do nothing if the folder cannot be written."""
     try:
         cached.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=cached.parent, suffix=".npz", delete=False) as beside:
-            np.savez(beside, **{key: np.asarray(array) for key, array in vars(mesh).items()})
-        Path(beside.name).replace(cached)
+        with tempfile.NamedTemporaryFile(dir=cached.parent, suffix=".npz", delete=False) as temporary:
+            np.savez(temporary, **{key: np.asarray(array) for key, array in vars(mesh).items()})
+        Path(temporary.name).replace(cached)
     except OSError:
         return

@@ -1,4 +1,4 @@
-"""Rigid poses in space as homogeneous (4, 4) matrices; ``a_in_b @ c_in_a = c_in_b``."""
+"""3D poses as homogeneous matrices (4, 4): ``a_in_b @ c_in_a == c_in_b``."""
 
 import math
 from typing import Iterable, Sequence, Tuple
@@ -11,7 +11,7 @@ IDENTITY = np.eye(4)
 
 
 def pose3(x=0.0, y=0.0, z=0.0, roll=0.0, pitch=0.0, yaw=0.0) -> np.ndarray:
-    """The pose of SDF and URDF: turned about the fixed axes x, y, z in this order, then moved."""
+    """Return the pose (4, 4) of SDF's and URDF's x, y, z, roll, pitch, yaw (fixed axes) [m, rad]."""
     (cr, sr), (cp, sp), (cy, sy) = ((math.cos(a), math.sin(a)) for a in (roll, pitch, yaw))
     return np.array(
         [
@@ -24,16 +24,17 @@ def pose3(x=0.0, y=0.0, z=0.0, roll=0.0, pitch=0.0, yaw=0.0) -> np.ndarray:
 
 
 def from_pose2(pose: Pose2, z: float = 0.0) -> np.ndarray:
+    """Return the pose (4, 4) of a planar pose at the height ``z`` [m]."""
     return pose3(pose.x, pose.y, z, yaw=pose.yaw)
 
 
 def to_pose2(pose: np.ndarray) -> Pose2:
-    """The pose seen from above."""
+    """Return x, y and yaw of a pose (4, 4)."""
     return Pose2(pose.item(0, 3), pose.item(1, 3), math.atan2(pose.item(1, 0), pose.item(0, 0)))
 
 
 def quaternion(pose: np.ndarray) -> Tuple[float, float, float, float]:
-    """Orientation as (x, y, z, w) (Shepperd 1978: divides by the largest part); plain numbers are quicker."""
+    """Return the orientation as a quaternion (x, y, z, w) (Shepperd, 1978); plain floats are faster here."""
     (xx, xy, xz, _), (yx, yy, yz, _), (zx, zy, zz, _), _ = pose.tolist()
     most = max(xx + yy + zz, xx, yy, zz)
     if most == xx + yy + zz:
@@ -49,7 +50,7 @@ def quaternion(pose: np.ndarray) -> Tuple[float, float, float, float]:
 
 
 def from_quaternion(q: Sequence[float]) -> np.ndarray:
-    """The rotation of a quaternion (x, y, z, w) of any length but zero."""
+    """Return the pose (4, 4) of a quaternion (x, y, z, w) of any length but zero."""
     x, y, z, w = np.asarray(q, dtype=float) / np.linalg.norm(q)
     pose = np.eye(4)
     pose[:3, :3] = [
@@ -61,7 +62,7 @@ def from_quaternion(q: Sequence[float]) -> np.ndarray:
 
 
 def inverse(pose: np.ndarray) -> np.ndarray:
-    """Of a rigid pose; numpy's general inverse wakes up BLAS's threads for so little."""
+    """Return the inverse of a rigid pose; numpy's general inverse would start BLAS threads."""
     inverted = np.eye(4)
     inverted[:3, :3] = pose[:3, :3].T
     inverted[:3, 3] = -(pose[:3, :3].T @ pose[:3, 3])
@@ -69,15 +70,16 @@ def inverse(pose: np.ndarray) -> np.ndarray:
 
 
 def transform_points(pose: np.ndarray, points_xyz: np.ndarray) -> np.ndarray:
-    """Points (N, 3) given in the pose's frame, seen from outside."""
+    """Transform points (N, 3) from the pose's frame into its parent's."""
     return points_xyz @ pose[:3, :3].T + pose[:3, 3]
 
 
 def cross(a: Iterable[float], b: Iterable[float]) -> np.ndarray:
-    """The vector product (3,); numpy's takes ten times as long for so little, plain numbers the least."""
+    """Return the cross product (3,); ten times as fast as numpy's for single vectors."""
     (ax, ay, az), (bx, by, bz) = a, b
     return np.array([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
 
 
 def position(pose: np.ndarray) -> Sequence[float]:
+    """Return the position of a pose as a list."""
     return pose[:3, 3].tolist()

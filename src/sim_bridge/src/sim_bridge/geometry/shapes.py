@@ -1,4 +1,4 @@
-"""Solid shapes, each centred on its own frame."""
+"""Geometric shapes, each centred at the origin of its frame."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,14 +9,14 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Box:
-    """Lengths along x, y and z, metres."""
+    """A box with lengths ``size`` along x, y and z [m]."""
 
     size: Tuple[float, float, float]
 
 
 @dataclass(frozen=True)
 class Cylinder:
-    """Axis along z, metres."""
+    """A cylinder along z; ``radius`` and ``length`` [m]."""
 
     radius: float
     length: float
@@ -24,21 +24,26 @@ class Cylinder:
 
 @dataclass(frozen=True)
 class Sphere:
+    """A sphere; ``radius`` [m]."""
+
     radius: float
 
 
 @dataclass(frozen=True)
 class Plane:
-    """Everything on the far side of an endless plane through the frame's origin."""
+    """The half-space below an infinite plane through the origin."""
 
     normal: Tuple[float, float, float] = (0.0, 0.0, 1.0)
 
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """Triangles: ``vertices`` (N, 3) metres, ``triangles`` (M, 3) indices into them.
+    """A triangle mesh.
 
-    ``colours``: (M, 3) of the triangles, red, green, blue, 0 to 1; None if they have none of their own.
+    Attributes:
+        vertices: Positions (N, 3) [m].
+        triangles: Vertex indices (M, 3).
+        colours: Red, green, blue (M, 3) of the triangles, 0 to 1; None for no colours.
     """
 
     vertices: np.ndarray
@@ -48,7 +53,14 @@ class Mesh:
 
 @dataclass(frozen=True)
 class MeshFile:
-    """A mesh in a file: its part named ``submesh`` (all if empty), put at its centre if ``centred``."""
+    """A mesh in a file.
+
+    Attributes:
+        path: The file.
+        scale: Scale factors along x, y and z.
+        submesh: Name of the part to use; empty for all.
+        centred: Whether the part's centre is moved to the origin.
+    """
 
     path: Path
     scale: Tuple[float, float, float] = (1.0, 1.0, 1.0)
@@ -61,7 +73,7 @@ VisualShape = Union[Shape, MeshFile]
 
 
 def scaled(shape: VisualShape, scale: Tuple[float, float, float]) -> VisualShape:
-    """A shape stretched along its axes as Gazebo does it: what is round stays round."""
+    """Return a shape scaled along its axes; as in Gazebo, cylinders and spheres stay round."""
     x, y, z = scale
     if isinstance(shape, Box):
         return Box((shape.size[0] * x, shape.size[1] * y, shape.size[2] * z))
@@ -77,8 +89,8 @@ def scaled(shape: VisualShape, scale: Tuple[float, float, float]) -> VisualShape
     return shape
 
 
-def outline(shape: Shape) -> np.ndarray:
-    """The outermost points (N, 3) of a solid, on a circle every 15 degrees; none of what has no end."""
+def outline_points(shape: Shape) -> np.ndarray:
+    """Return the extreme points (N, 3) of a solid, on circles every 15 degrees; none for a plane."""
     if isinstance(shape, Mesh):
         return shape.vertices
     if isinstance(shape, Box):

@@ -1,4 +1,4 @@
-"""Level cuts through solid shapes."""
+"""Horizontal slices through solid shapes."""
 
 import math
 from typing import Iterator, Union
@@ -8,16 +8,23 @@ import numpy as np
 from sim_bridge.geometry.pose3 import transform_points
 from sim_bridge.geometry.shapes import Box, Cylinder, Mesh, Plane, Shape, Sphere
 
-# Circles become polygons that lie within this, in metres, of them.
+# Largest distance of the polygon of a circle from the circle [m].
 CIRCLE_DEVIATION = 5e-4
-# Cosine of the tilt up to which a level cut through a box or cylinder is its whole outline.
+# Cosine of the tilt up to which a slice of a box or cylinder is its whole outline.
 UPRIGHT = 1.0 - 1e-12
 
 
 def slice_shape(shape: Shape, pose: np.ndarray, bottom: float, top: float) -> Iterator[np.ndarray]:
-    """Convex outlines, seen from above, of what of a shape placed at ``pose`` lies between two heights.
+    """Yield convex outlines, seen from above, of the part of a shape between two heights.
 
-    Each is an array (N, 2) of corners in order. Planes, which are floors, have none.
+    Args:
+        shape: The shape; a plane, which is a floor, has no outline.
+        pose: Pose (4, 4) of the shape.
+        bottom: Lower height [m].
+        top: Upper height [m].
+
+    Yields:
+        Corners (N, 2), in order, of each outline.
     """
     if isinstance(shape, Plane):
         return
@@ -42,7 +49,7 @@ def slice_shape(shape: Shape, pose: np.ndarray, bottom: float, top: float) -> It
 
 
 def _corners(shape: Union[Box, Cylinder]) -> np.ndarray:
-    """Corners (N, 3) of a box, or of a prism for a cylinder."""
+    """Return the corners (N, 3) of a box, or of a prism for a cylinder."""
     if isinstance(shape, Cylinder):
         circle = _circle(shape.radius)
         half = np.full((len(circle), 1), shape.length / 2.0)
@@ -52,31 +59,31 @@ def _corners(shape: Union[Box, Cylinder]) -> np.ndarray:
 
 
 def _circle(radius: float) -> np.ndarray:
-    """Corners (N, 2), in order, of a polygon in a circle about the origin."""
+    """Return the corners (N, 2), in order, of a polygon in a circle around the origin."""
     bend = min(CIRCLE_DEVIATION / radius, 0.3)
     angles = np.linspace(0.0, 2.0 * math.pi, math.ceil(math.pi / math.acos(1.0 - bend)), endpoint=False)
     return radius * np.column_stack((np.cos(angles), np.sin(angles)))
 
 
 def _between(points_xyz: np.ndarray, bottom: float, top: float) -> np.ndarray:
-    """Points (N, 3) whose convex hull is that of ``points_xyz`` cut off below ``bottom`` and above ``top``.
+    """Return points (N, 3) whose convex hull is that of ``points_xyz``, clipped to two heights.
 
-    Every pair of points on two sides of a cut adds where it crosses: a superset of the hull's edges.
+    Each pair of points on both sides of a plane adds its intersection: a superset of the hull's edges.
     """
     for level, side in ((bottom, 1.0), (top, -1.0)):
         above = side * (points_xyz[:, 2] - level)
-        kept, gone = above >= 0.0, above < 0.0
-        share = above[kept, None] / (above[kept, None] - above[None, gone])
-        crossings = points_xyz[kept, None] + share[..., None] * (
-            points_xyz[None, gone] - points_xyz[kept, None]
+        inside, outside = above >= 0.0, above < 0.0
+        fraction = above[inside, None] / (above[inside, None] - above[None, outside])
+        crossings = points_xyz[inside, None] + fraction[..., None] * (
+            points_xyz[None, outside] - points_xyz[inside, None]
         )
         crossings[..., 2] = level
-        points_xyz = np.vstack((points_xyz[kept], crossings.reshape(-1, 3)))
+        points_xyz = np.vstack((points_xyz[inside], crossings.reshape(-1, 3)))
     return points_xyz
 
 
 def _outline(points_xyz: np.ndarray) -> np.ndarray:
-    """Corners (N, 2), in order, of the convex hull seen from above; all points if they lie on one line."""
+    """Return the corners (N, 2), in order, of the planar convex hull; all points if collinear."""
     from scipy.spatial import ConvexHull, QhullError  # late: few worlds have meshes
 
     points_xy = points_xyz[:, :2]

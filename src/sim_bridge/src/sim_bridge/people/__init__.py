@@ -1,1 +1,1 @@
-"""People who walk about in a world, each to goals of their own, and give way to each other and to robots."""
+"""Pedestrians that walk to their goals and avoid each other and robots (social force model)."""

@@ -1,4 +1,4 @@
-"""All people of a scene, moved on together."""
+"""The pedestrians of a scene."""
 
 import math
 from typing import Iterable, Sequence
@@ -8,122 +8,144 @@ import numpy as np
 from planar import Pose2
 from sim_bridge.geometry.pose3 import from_pose2
 from sim_bridge.geometry.shapes import Cylinder
-from sim_bridge.people.forces import advance, push
+from sim_bridge.people.forces import advance, social_forces
 from sim_bridge.people.walkable_area import RESOLUTION, WalkableArea
 from sim_bridge.people.walker import Walker
 from sim_bridge.physics.kinematics import KinematicBodies
 from sim_bridge.robot import Robot
 from sim_bridge.world import Body, Collision, World
 
-# Times a second that people are moved on.
+# Rate at which pedestrians are moved [Hz].
 WALK_RATE = 25
-# Metres from a goal at which one has come; by which one has to come nearer to it, however one sways, to get
-# on, and for how many seconds one puts up with getting on no more before going elsewhere.
-ARRIVED, NEARER, PATIENCE = 0.35, 0.3, 4.0
-# Metres: of a robot to people, who keep more off it than it is wide.
+# Distance at which a goal is reached [m], decrease of the remaining path that counts as progress [m], and
+# time without progress after which a pedestrian goes to the next goal [s].
+GOAL_TOLERANCE, PROGRESS_DISTANCE, PATIENCE = 0.35, 0.3, 4.0
+# Radius of a robot for pedestrians, who keep a distance from it [m].
 ROBOT_RADIUS = 0.25
-NOBODY = np.empty((0, 5))
+NO_STATES = np.empty((0, 5))
 
 
 class Crowd:
-    """Knows where its people are, how they move, and what they feel of each other, of walls and of robots.
+    """Moves the pedestrians of a scene by social forces.
 
-    ``links``, ``bodies``: of each; ``rows`` (N, 5): x, y, velocity by x and y, m/s, radius. Raises WorldError
-    for a goal that nobody can stand at.
+    Args:
+        walkers: The pedestrians.
+        world: The world they walk in.
+
+    Attributes:
+        links: Names of their links.
+        bodies: Their bodies.
+        rows: Their states (N, 5): x, y [m], velocity along x and y [m/s], radius [m].
+
+    Raises:
+        WorldError: A goal is not in free space.
     """
 
     def __init__(self, walkers: Sequence[Walker], world: World):
         self._walkers = tuple(walkers)
         self.links = tuple(walker.link for walker in walkers)
         self.bodies = tuple(body_of(walker) for walker in walkers)
-        self.rows = NOBODY
+        self.rows = NO_STATES
         if not walkers:
             return
-        self._ground = WalkableArea(world, Pose2(*walkers[0].goals_xy[0].tolist()))
+        self._area = WalkableArea(world, Pose2(*walkers[0].goals_xy[0].tolist()))
         goals = [len(walker.goals_xy) for walker in walkers]
         self._first_goals = np.concatenate(([0], np.cumsum(goals)[:-1])).astype(int)
         self._goals_xy = np.vstack([walker.goals_xy for walker in walkers])
-        self._ways = self._ground.distances_to(self._goals_xy)
+        self._goal_distances = self._area.distances_to(self._goals_xy)
         self._groups = np.array([walker.group for walker in walkers])
-        self._begin()
+        self._reset()
 
-    def _begin(self) -> None:
-        """Everybody stands where they begin."""
+    def _reset(self) -> None:
+        """Move all pedestrians to their first goals."""
         firsts = [(*walker.goals_xy[0], 0.0, 0.0, walker.radius) for walker in self._walkers]
         self.rows = np.array(firsts, dtype=float).reshape(-1, 5)
-        self._turns = [0] * len(self._walkers)
-        # Until when each rests; how near to the goal each has come, metres of way, and since when no nearer.
-        self._rests = [walker.rest for walker in self._walkers]
-        self._nearest = [math.inf] * len(self._walkers)
-        self._stuck_since = [0.0] * len(self._walkers)
+        self._goal_indices = [0] * len(self._walkers)
+        # Time until which each rests, shortest remaining path so far [m], and time of the last progress.
+        self._rest_until = [walker.rest for walker in self._walkers]
+        self._shortest_remaining = [math.inf] * len(self._walkers)
+        self._last_progress = [0.0] * len(self._walkers)
 
     def update(
         self, engine: KinematicBodies, step: int, rate: int, stamp: float, robots: Iterable[Robot]
     ) -> None:
-        """Before the step of physics number ``step``, of ``rate`` a second, which begins at ``stamp``.
+        """Move the pedestrians, if due; at time 0 all return to their first goals.
 
-        At time 0 all begin anew.
+        Args:
+            engine: Holds their bodies.
+            step: Number of the next physics step.
+            rate: Physics steps per second.
+            stamp: Simulated time [s].
+            robots: The robots that they avoid.
         """
         every = max(rate // WALK_RATE, 1)
         if not self._walkers or step % every:
             return
         if stamp == 0.0:
-            self._begin()
-        self._choose(stamp)
-        speeds = [0.0 if stamp < rests else walker.speed for walker, rests in zip(self._walkers, self._rests)]
-        corner = np.concatenate((self._ground.origin_xy, np.zeros(3)))
-        seen = self.rows - corner
+            self._reset()
+        self._select_goals(stamp)
+        speeds = [
+            0.0 if stamp < until else walker.speed for walker, until in zip(self._walkers, self._rest_until)
+        ]
+        corner = np.concatenate((self._area.origin_xy, np.zeros(3)))
+        states = self.rows - corner
         advance(
-            seen,
+            states,
             np.array(speeds),
-            np.array([first + turn for first, turn in zip(self._first_goals, self._turns)]),
+            np.array([first + index for first, index in zip(self._first_goals, self._goal_indices)]),
             self._groups,
             rows_of(robots) - corner,
-            self._ground.walls,
-            self._ways,
+            self._area.walls,
+            self._goal_distances,
             RESOLUTION,
             every / rate,
         )
-        self.rows = seen + corner
-        places = [(link, x, y) for link, (x, y, *_) in zip(self.links, self.rows.tolist())]
-        engine.set_positions(
-            place for place in places if engine.has_link(place[0])
-        )  # nobody has taken it away
+        self.rows = states + corner
+        positions = [(link, x, y) for link, (x, y, *_) in zip(self.links, self.rows.tolist())]
+        # Bodies may have been deleted.
+        engine.set_positions(each for each in positions if engine.has_link(each[0]))
 
-    def _choose(self, stamp: float) -> None:
-        """Who has come to a goal rests and then goes to the next; so does who cannot get on."""
+    def _select_goals(self, stamp: float) -> None:
+        """Choose the next goal of pedestrians that have rested at a goal or that make no progress."""
         for number, walker in enumerate(self._walkers):
             x, y = self.rows[number, :2].tolist()
-            goal = self._first_goals[number] + self._turns[number]
+            goal = self._first_goals[number] + self._goal_indices[number]
             goal_x, goal_y = self._goals_xy[goal].tolist()
-            is_there = math.hypot(goal_x - x, goal_y - y) < ARRIVED
-            left = self._ground.remaining_distance(self._ways[goal], x, y)
-            if is_there or stamp < self._rests[number] or left < self._nearest[number] - NEARER:
-                self._nearest[number], self._stuck_since[number] = left, stamp
-            if stamp < self._rests[number] or len(walker.goals_xy) == 1:
+            has_arrived = math.hypot(goal_x - x, goal_y - y) < GOAL_TOLERANCE
+            remaining = self._area.remaining_distance(self._goal_distances[goal], x, y)
+            if (
+                has_arrived
+                or stamp < self._rest_until[number]
+                or remaining < self._shortest_remaining[number] - PROGRESS_DISTANCE
+            ):
+                self._shortest_remaining[number], self._last_progress[number] = remaining, stamp
+            if stamp < self._rest_until[number] or len(walker.goals_xy) == 1:
                 continue
-            if is_there or stamp - self._stuck_since[number] > PATIENCE:
-                self._turns[number] = (self._turns[number] + 1) % len(walker.goals_xy)
-                self._nearest[number], self._stuck_since[number] = math.inf, stamp
-                self._rests[number] = stamp + walker.rest if is_there else stamp
+            if has_arrived or stamp - self._last_progress[number] > PATIENCE:
+                self._goal_indices[number] = (self._goal_indices[number] + 1) % len(walker.goals_xy)
+                self._shortest_remaining[number], self._last_progress[number] = math.inf, stamp
+                self._rest_until[number] = stamp + walker.rest if has_arrived else stamp
 
 
 def rows_of(robots: Iterable[Robot]) -> np.ndarray:
-    """Robots as people see them, (M, 5)."""
-    motions = [robot.vehicle.state() for robot in robots]
-    rows = [(*motion.pose[:2, 3], *motion.linear[:2], ROBOT_RADIUS) for motion in motions]
+    """Return the states (M, 5) of robots, as ``Crowd.rows``."""
+    states = [robot.vehicle.state() for robot in robots]
+    rows = [(*state.pose[:2, 3], *state.linear[:2], ROBOT_RADIUS) for state in states]
     return np.array(rows, dtype=float).reshape(-1, 5)
 
 
 def social_work(robot: np.ndarray, people: np.ndarray) -> float:
-    """Of the forces, m/s^2, between a robot, (5,), and people, (N, 5): on it, and by it on each of them."""
-    on_robot = np.linalg.norm(push(robot, people).sum(axis=0))
-    on_people = sum(float(np.linalg.norm(push(each, robot[None, :]))) for each in people)
+    """Return the social work of a robot (5,) among pedestrians (N, 5).
+
+    It is the sum of the magnitudes of the social forces on the robot, and by it on each pedestrian [m/s^2].
+    """
+    on_robot = np.linalg.norm(social_forces(robot, people).sum(axis=0))
+    on_people = sum(float(np.linalg.norm(social_forces(each, robot[None, :]))) for each in people)
     return float(on_robot) + on_people
 
 
 def body_of(walker: Walker) -> Body:
-    """A cylinder, which is all that a laser sees of a person in a skirt."""
-    place = from_pose2(Pose2(*walker.goals_xy[0].tolist()), z=walker.height / 2.0)
+    """Return the body of a pedestrian: a cylinder."""
+    pose = from_pose2(Pose2(*walker.goals_xy[0].tolist()), z=walker.height / 2.0)
     solid = (Collision(Cylinder(walker.radius, walker.height), np.eye(4)),)
-    return Body(walker.link, place, solid, is_kinematic=True)
+    return Body(walker.link, pose, solid, is_kinematic=True)

@@ -1,7 +1,8 @@
-"""What moves people (social force: Helbing and Molnar, 1995; the way one gives way: Moussaid et al.,
-"Experimental study of the behavioural mechanisms underlying self-organization in human crowds", 2009).
+"""Social force model of pedestrians (Helbing and Molnar, 1995).
 
-Masses are 1, so that forces are accelerations, m/s^2. Who moves is a row: x, y, velocity by x and y, radius.
+The interaction force is that of Moussaid et al., "Experimental study of the behavioural mechanisms underlying
+self-organization in human crowds", 2009. Masses are 1, so that forces are accelerations [m/s^2]. The state of
+an agent is a row: x, y [m], velocity along x and y [m/s], radius [m].
 """
 
 import math
@@ -9,19 +10,18 @@ import math
 import numba
 import numpy as np
 
-# Seconds in which one comes to one's own speed.
+# Time constant with which an agent reaches its preferred velocity [s].
 RELAXATION = 0.5
-# Of Moussaid et al.: strength, weight of velocities, reach, and how narrow the push back and the push aside
-# are.
-STRENGTH, OF_VELOCITY, REACH, NARROW_BACK, NARROW_ASIDE = 4.5, 2.0, 0.35, 3.0, 2.0
-# Of walls (Moussaid et al.), and of bodies that nearly touch (Helbing, Farkas and Vicsek, 2000): strength,
-# reach, metres.
-WALL_STRENGTH, WALL_REACH = 3.0, 0.1
-TOUCH_STRENGTH, TOUCH_REACH = 12.0, 0.08
-# Who walks together draws near its middle when farther off than this, metres, with this strength.
-TOGETHER, COHESION = 0.6, 1.5
-# How much faster than one likes one gets out of the way, and m/s of who rests.
-HASTE, SHUFFLE = 1.3, 0.5
+# Interaction force of Moussaid et al.: A, lambda, gamma, n' (deceleration) and n (change of direction).
+STRENGTH, VELOCITY_WEIGHT, RANGE, DECELERATION_NARROWNESS, DIRECTION_NARROWNESS = 4.5, 2.0, 0.35, 3.0, 2.0
+# Strength and range [m] of the forces of walls (Moussaid et al.) and of bodies in contact (Helbing, Farkas
+# and Vicsek, 2000).
+WALL_STRENGTH, WALL_RANGE = 3.0, 0.1
+CONTACT_STRENGTH, CONTACT_RANGE = 12.0, 0.08
+# Distance from the group's centroid above which cohesion acts [m], and its strength.
+GROUP_DISTANCE, COHESION = 0.6, 1.5
+# Ratio of the largest to the preferred speed, and largest speed of an agent at rest [m/s].
+MAX_SPEED_RATIO, MAX_REST_SPEED = 1.3, 0.5
 
 
 def advance(
@@ -31,30 +31,39 @@ def advance(
     groups: np.ndarray,
     robots: np.ndarray,
     walls: np.ndarray,
-    ways: np.ndarray,
+    goal_distances: np.ndarray,
     size: float,
     seconds: float,
 ) -> np.ndarray:
-    """Moves people on, and returns the forces on them without that to their goals, (N, 2).
+    """Advance pedestrians by one time step.
 
-    ``rows`` (N, 5): x, y, velocity by x and y, radius, changed in place; places are seen from the corner of
-    the ground. ``speeds`` (N,): that each likes, m/s, 0: rests; ``goals`` (N,): which of the ``ways``
-    (G, rows, cols), metres to a goal, each is on; ``groups`` (N,), 0: alone; ``robots`` (M, 5): as people.
-    ``walls``: metres to what is solid; ``size``: of a cell; ``seconds``: how far to move on.
+    Args:
+        rows: States (N, 5), changed in place; positions are relative to the corner of the grid.
+        speeds: Preferred speeds (N,) [m/s]; 0 for an agent at rest.
+        goals: Indices (N,) of the agents' goals in ``goal_distances``.
+        groups: Numbers (N,) of the agents' groups; 0 for none.
+        robots: States (M, 5) of robots.
+        walls: Distance (rows, cols) of each cell to the nearest solid [m].
+        goal_distances: Path length (G, rows, cols) from each cell to each goal [m].
+        size: Size of a cell [m].
+        seconds: Time step [s].
+
+    Returns:
+        The forces (N, 2) on the agents, without those towards their goals [m/s^2].
     """
     forces = _forces(rows, groups, robots, walls, size)
-    _move(rows, speeds, goals, forces, walls, ways, size, seconds)
+    _move(rows, speeds, goals, forces, walls, goal_distances, size, seconds)
     return forces
 
 
-def push(own: np.ndarray, others: np.ndarray) -> np.ndarray:
-    """The social force of others, rows (N, 5), on who moves as ``own``, (5,); (N, 2)."""
+def social_forces(own: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """Return the social forces (N, 2) of other agents (N, 5) on one agent (5,) [m/s^2]."""
     return np.array([_social_force(own, other) for other in others]).reshape(-1, 2)
 
 
 @numba.njit(cache=True)
 def _forces(rows, groups, robots, walls, size):
-    """Of others, of walls and of those who walk together, (N, 2)."""
+    """Return the forces (N, 2) of other agents, of walls and of the own group."""
     forces = np.zeros((rows.shape[0], 2))
     for i in range(rows.shape[0]):
         x, y = _wall_force(rows[i, 0], rows[i, 1], rows[i, 4], walls, size)
@@ -70,20 +79,20 @@ def _forces(rows, groups, robots, walls, size):
             x, y = x + of_x, y + of_y
         off_x, off_y = mid_x / together - rows[i, 0], mid_y / together - rows[i, 1]
         off = math.hypot(off_x, off_y)
-        if groups[i] != 0 and off > TOGETHER:
+        if groups[i] != 0 and off > GROUP_DISTANCE:
             x, y = x + COHESION * off_x / off, y + COHESION * off_y / off
         forces[i] = x, y
     return forces
 
 
 @numba.njit(cache=True)
-def _move(rows, speeds, goals, forces, walls, ways, size, seconds):
-    """Velocities, then places; nobody is faster than a little more than likes, nor walks into a wall."""
+def _move(rows, speeds, goals, forces, walls, goal_distances, size, seconds):
+    """Update velocities, then positions; limits the speed and prevents agents from entering walls."""
     for i in range(rows.shape[0]):
-        ahead_x, ahead_y = _way_ahead(rows[i, 0], rows[i, 1], ways[goals[i]], size)
+        ahead_x, ahead_y = _goal_direction(rows[i, 0], rows[i, 1], goal_distances[goals[i]], size)
         v_x = rows[i, 2] + seconds * (forces[i, 0] + (speeds[i] * ahead_x - rows[i, 2]) / RELAXATION)
         v_y = rows[i, 3] + seconds * (forces[i, 1] + (speeds[i] * ahead_y - rows[i, 3]) / RELAXATION)
-        fastest = max(HASTE * speeds[i], SHUFFLE)
+        fastest = max(MAX_SPEED_RATIO * speeds[i], MAX_REST_SPEED)
         slower = min(1.0, fastest / max(math.hypot(v_x, v_y), 1e-9))
         v_x, v_y = slower * v_x, slower * v_y
         x, y = rows[i, 0] + seconds * v_x, rows[i, 1] + seconds * v_y
@@ -96,23 +105,23 @@ def _move(rows, speeds, goals, forces, walls, ways, size, seconds):
 
 @numba.njit(cache=True)
 def _social_force(own, other):
-    """On who moves as ``own`` because of ``other``, both rows (5,)."""
+    """Return the force of one agent on another, both states (5,)."""
     off_x, off_y = other[0] - own[0], other[1] - own[1]
     distance = math.hypot(off_x, off_y)
     if distance < 1e-6:
         return 0.0, 0.0
     off_x, off_y = off_x / distance, off_y / distance
-    toward_x = OF_VELOCITY * (own[2] - other[2]) + off_x
-    toward_y = OF_VELOCITY * (own[3] - other[3]) + off_y
+    toward_x = VELOCITY_WEIGHT * (own[2] - other[2]) + off_x
+    toward_y = VELOCITY_WEIGHT * (own[3] - other[3]) + off_y
     length = max(math.hypot(toward_x, toward_y), 1e-6)
     toward_x, toward_y = toward_x / length, toward_y / length
     angle = math.atan2(toward_x * off_y - toward_y * off_x, toward_x * off_x + toward_y * off_y)
-    reach = REACH * length
-    back = STRENGTH * math.exp(-distance / reach - (NARROW_BACK * reach * angle) ** 2)
-    aside = STRENGTH * math.exp(-distance / reach - (NARROW_ASIDE * reach * angle) ** 2)
-    # To the right of who comes straight on.
+    reach = RANGE * length
+    back = STRENGTH * math.exp(-distance / reach - (DECELERATION_NARROWNESS * reach * angle) ** 2)
+    aside = STRENGTH * math.exp(-distance / reach - (DIRECTION_NARROWNESS * reach * angle) ** 2)
+    # An agent that comes straight on is passed on its right.
     side = -1.0 if angle >= 0.0 else 1.0
-    touch = TOUCH_STRENGTH * math.exp(min(own[4] + other[4] - distance, 0.1) / TOUCH_REACH)
+    touch = CONTACT_STRENGTH * math.exp(min(own[4] + other[4] - distance, 0.1) / CONTACT_RANGE)
     return (
         -back * toward_x - side * aside * toward_y - touch * off_x,
         -back * toward_y + side * aside * toward_x - touch * off_y,
@@ -121,19 +130,19 @@ def _social_force(own, other):
 
 @numba.njit(cache=True)
 def _wall_force(x, y, radius, walls, size):
-    """Of what is solid; x, y from the corner of ``walls``, metres to it of cells with sides of ``size``."""
+    """Return the force of walls at a position relative to the corner of the grid ``walls``."""
     near = _value_at(walls, x / size, y / size)
-    # Between two walls the field rises less, as they push against each other: it is flat in the middle.
-    force = 0.5 / size * WALL_STRENGTH * math.exp(min(radius - near + 0.5 * size, 0.1) / WALL_REACH)
+    # The force is proportional to the gradient of the distance, which vanishes midway between two walls.
+    force = 0.5 / size * WALL_STRENGTH * math.exp(min(radius - near + 0.5 * size, 0.1) / WALL_RANGE)
     slope_x = _value_at(walls, x / size + 1.0, y / size) - _value_at(walls, x / size - 1.0, y / size)
     slope_y = _value_at(walls, x / size, y / size + 1.0) - _value_at(walls, x / size, y / size - 1.0)
     return force * slope_x, force * slope_y
 
 
 @numba.njit(cache=True)
-def _way_ahead(x, y, ways, size):
-    """The direction in which a goal comes nearer, (0, 0) at it; ``ways``: metres to it from each cell."""
-    rows, cols = ways.shape
+def _goal_direction(x, y, distances, size):
+    """Return the direction in which the path length ``distances`` to a goal decreases; (0, 0) at the goal."""
+    rows, cols = distances.shape
     col, row = int(x / size), int(y / size)
     best, best_x, best_y = np.inf, 0.0, 0.0
     for down in range(-3, 4):
@@ -141,7 +150,7 @@ def _way_ahead(x, y, ways, size):
             there_row, there_col = row + down, col + right
             if 0 <= there_row < rows and 0 <= there_col < cols:
                 off_x, off_y = (there_col + 0.5) * size - x, (there_row + 0.5) * size - y
-                cost = ways[there_row, there_col] + math.hypot(off_x, off_y)
+                cost = distances[there_row, there_col] + math.hypot(off_x, off_y)
                 if cost < best:
                     best, best_x, best_y = cost, off_x, off_y
     length = math.hypot(best_x, best_y)
@@ -150,7 +159,7 @@ def _way_ahead(x, y, ways, size):
 
 @numba.njit(cache=True)
 def _value_at(field, col, row):
-    """Between the middles of cells; at the edge, that of the edge."""
+    """Interpolate a field bilinearly between the centres of cells; it is constant beyond its edges."""
     rows, cols = field.shape
     col, row = min(max(col - 0.5, 0.0), cols - 1.001), min(max(row - 0.5, 0.0), rows - 1.001)
     left, low = int(col), int(row)

@@ -1,4 +1,4 @@
-"""Where people can walk: how far it is to walls, and how far to each goal by the shortest way."""
+"""The area in which pedestrians can walk: distances to walls, and path lengths to goals."""
 
 import numpy as np
 
@@ -9,34 +9,46 @@ from sim_bridge.errors import WorldError
 from sim_bridge.views.true_map import true_map
 from sim_bridge.world import World
 
-# Side of a cell, metres; how much room ways leave beside the narrowest person, and for how long a way counts
-# where there is none.
-RESOLUTION, ROOM, UNREACHABLE = 0.1, 0.25, 1e6
+# Size of a cell [m], distance of paths from walls [m], and path length where there is no path [m].
+RESOLUTION, WALL_DISTANCE, UNREACHABLE = 0.1, 0.25, 1e6
 
 
 class WalkableArea:
-    """The free ground of a world around a place; ``walls`` (rows, cols): metres to what is solid."""
+    """The free area of a world that contains a point.
+
+    Args:
+        world: The world.
+        inside: The point.
+
+    Attributes:
+        origin_xy: Corner of the grid (2,) in the world [m].
+        walls: Distance of each cell to the nearest solid (rows, cols) [m].
+    """
 
     def __init__(self, world: World, inside: Pose2):
         grid = true_map(world, resolution=RESOLUTION, inside=(inside.x, inside.y))
         self.origin_xy = np.array([grid.origin.x, grid.origin.y])
         self.walls = distance_field(grid.cells != FREE, RESOLUTION).astype(float)
-        self._is_open = self.walls > ROOM
+        self._is_open = self.walls > WALL_DISTANCE
         self._graph = grid_graph(self._is_open, RESOLUTION)
         self._world, self._grid = world.name, grid
 
     def distances_to(self, goals_xy: np.ndarray) -> np.ndarray:
-        """Metres to each of the goals (N, 2) from each cell, (N, rows, cols). Raises WorldError."""
+        """Return the path length (N, rows, cols) from each cell to each of the goals (N, 2) [m].
+
+        Raises:
+            WorldError: A goal is not in the area.
+        """
         from scipy.sparse.csgraph import dijkstra  # late: few worlds have people
 
-        ways = dijkstra(self._graph, directed=False, indices=[self._node_at(*goal) for goal in goals_xy])
-        ways[~np.isfinite(ways)] = UNREACHABLE
-        return ways.reshape(-1, *self.walls.shape)
+        distances = dijkstra(self._graph, directed=False, indices=[self._node_at(*goal) for goal in goals_xy])
+        distances[~np.isfinite(distances)] = UNREACHABLE
+        return distances.reshape(-1, *self.walls.shape)
 
-    def remaining_distance(self, ways: np.ndarray, x: float, y: float) -> float:
-        """Metres from a place to the goal that ``ways`` (rows, cols) lead to."""
+    def remaining_distance(self, distances: np.ndarray, x: float, y: float) -> float:
+        """Return the path length [m] from a point to the goal of ``distances`` (rows, cols)."""
         ((row, col),) = self._grid.cells_of([[x, y]])
-        return float(ways[row, col])
+        return float(distances[row, col])
 
     def _node_at(self, x: float, y: float) -> int:
         ((row, col),) = self._grid.cells_of([[x, y]])

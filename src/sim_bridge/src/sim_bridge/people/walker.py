@@ -1,4 +1,4 @@
-"""A person, as data."""
+"""Description of a pedestrian."""
 
 from dataclasses import dataclass
 
@@ -9,10 +9,19 @@ from sim_bridge.errors import WorldError
 
 @dataclass(frozen=True, eq=False)
 class Walker:
-    """The person ``name`` goes from place to place of ``goals_xy`` (N, 2), for ever, begun at the first.
+    """A pedestrian that visits its goals in turn, again and again, starting at the first.
 
-    ``speed``: m/s when nothing is in the way; ``rest``: seconds spent at each goal; ``group``: of those who
-    walk together, 0: alone. Who has one goal stands there. Lengths in metres.
+    Attributes:
+        name: Name of the model.
+        goals_xy: Goals (N, 2) in the world [m]; a pedestrian with one goal stands there.
+        speed: Preferred speed [m/s].
+        rest: Time spent at each goal [s].
+        group: Pedestrians with the same number walk together; 0 for alone.
+        radius: Radius of the body [m].
+        height: Height of the body [m].
+
+    Raises:
+        WorldError: A value is not valid.
     """
 
     name: str
@@ -32,4 +41,5 @@ class Walker:
 
     @property
     def link(self) -> str:
+        """Name of its link."""
         return f"{self.name}::link"

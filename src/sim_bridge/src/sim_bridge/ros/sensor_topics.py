@@ -90,7 +90,7 @@ class RobotSensorTopics:
     def enable_subscribed(self) -> None:
         """Enable the sensors on demand that have subscribers; to be called before a step."""
         for name, topics in self._topics:
-            self._robot.want(name, topics.has_subscribers())
+            self._robot.enable_sensor(name, topics.has_subscribers())
 
     def publish(self, observation: StepResult) -> None:
         """Publish the readings of a step."""

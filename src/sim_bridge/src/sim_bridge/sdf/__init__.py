@@ -1,4 +1,4 @@
-"""Reads Gazebo's world files (SDF 1.4 to 1.7) as far as a wheeled robot meets or sees them. Pure."""
+"""Reads Gazebo worlds and models (SDF 1.4 to 1.7), as far as they matter to a wheeled robot."""
 
 from sim_bridge.sdf.reader import load_world, read_model
 

@@ -1,4 +1,4 @@
-"""<actor> elements: people, as upright bodies that go the way of their trajectory."""
+"""Reads <actor> elements: pedestrians, as cylinders that follow their trajectory."""
 
 from typing import List, Optional, Tuple
 
@@ -12,28 +12,28 @@ from sim_bridge.sdf.supported import REDUNDANT_PLUGINS, plugin_name
 from sim_bridge.sdf.warnings import SkippedElements
 from sim_bridge.world import Body, Collision
 
-# Of a person who walks: metres, about the one of Gazebo's own skins.
+# Size of an actor [m], about that of Gazebo's skins.
 RADIUS, HEIGHT = 0.25, 1.7
-# Seconds that who has arrived for good stays there.
-FOR_EVER = 1e9
+# Time that an actor stays at its last waypoint if its trajectory is not a loop [s].
+STAY = 1e9
 
 
 def read_actor(actor: Element, warnings: SkippedElements) -> Tuple[Body, Optional[ScriptedTrajectory]]:
-    """The body of an actor, and the way it goes; None if it stays. Raises WorldError."""
+    """Return the body of an actor, and its trajectory; None if it does not move. Raises WorldError."""
     warnings.check_children(actor)
     for plugin in actor.children("plugin"):
         if plugin_name(plugin) not in REDUNDANT_PLUGINS:
-            warnings.skip(plugin, "left out, it moves by its trajectory alone")
+            warnings.skip(plugin, "ignored, the actor moves by its trajectory alone")
     link = f"{actor.name}::link"
-    course = _course(actor, link)
-    stands = actor.raw_pose()
-    x, y = course.at(0.0) if course else ((0.0, 0.0) if stands is None else stands[:2, 3])
+    trajectory = _trajectory(actor, link)
+    own_pose = actor.raw_pose()
+    x, y = trajectory.at(0.0) if trajectory else ((0.0, 0.0) if own_pose is None else own_pose[:2, 3])
     solid = Collision(Cylinder(RADIUS, HEIGHT), IDENTITY)
-    place = pose3(x, y, HEIGHT / 2.0)
-    return Body(link, place, (solid,), is_kinematic=course is not None), course
+    pose = pose3(x, y, HEIGHT / 2.0)
+    return Body(link, pose, (solid,), is_kinematic=trajectory is not None), trajectory
 
 
-def _course(actor: Element, link: str) -> Optional[ScriptedTrajectory]:
+def _trajectory(actor: Element, link: str) -> Optional[ScriptedTrajectory]:
     script, trajectory = actor.child("script"), actor.child("script", "trajectory")
     waypoints = [] if trajectory is None else list(trajectory.children("waypoint"))
     if script is None or not waypoints:
@@ -50,6 +50,6 @@ def _course(actor: Element, link: str) -> Optional[ScriptedTrajectory]:
         keyframes.insert(0, (0.0, *keyframes[0][1:]))
     is_repeated = script.child("loop") is None or script.flag("loop")
     if len(keyframes) == 1 or not is_repeated:
-        keyframes.append((keyframes[-1][0] + FOR_EVER, *keyframes[-1][1:]))
+        keyframes.append((keyframes[-1][0] + STAY, *keyframes[-1][1:]))
     times, *points = np.array(keyframes).T
     return ScriptedTrajectory(link, times, np.column_stack(points))

@@ -1,4 +1,4 @@
-"""XML elements that know where they stand, so that an error can name its place."""
+"""XML elements with typed access, whose errors name the file and the element."""
 
 import math
 import re
@@ -14,18 +14,27 @@ from planar.geometry.limits import MAX_COORDINATE, is_within
 from sim_bridge.errors import WorldError
 from sim_bridge.geometry.pose3 import pose3
 
-# More than any number in a file of Gazebo's, and small enough to be multiplied.
+# Bound of all numbers: above any that Gazebo writes, and small enough to be multiplied.
 LARGEST = 1e30
-# Gazebo writes its largest number where there is no bound.
+# A larger number means no bound: Gazebo writes its largest one.
 UNLIMITED = 1e15
-# What Gazebo makes of a shape's length of 0, metres.
+# Length that Gazebo replaces 0 by [m].
 THINNEST = 1e-4
 _VALUE_WITH_BRACKET = re.compile(r"""=(?:"[^"\n]*<[^"\n]*"|'[^'\n]*<[^'\n]*')""")
 _VERSION_NUMBER = re.compile(r"[0-9]{1,9}$")
 
 
 class Element:
-    """A node of an SDF file: typed access to what is in it. ``version``: that of the file, e.g. (1, 6)."""
+    """An element of an SDF or URDF file, with typed access to its content.
+
+    Attributes:
+        xml: The XML element.
+        file: Name of the file, for errors.
+        version: SDF version of the file, e.g. (1, 6).
+        tag: Its tag.
+        name: Its attribute ``name``.
+        place: Path of the element in the file, for errors.
+    """
 
     def __init__(self, xml, file: str, place: str = "", version: Tuple[int, ...] = ()):
         self.xml = xml
@@ -37,24 +46,28 @@ class Element:
         self.place = f"{place} > {label}" if place else label
 
     def error(self, text: str) -> WorldError:
+        """Return an error that names the file and the element."""
         return WorldError(f"{self.file}: {self.place}: {text}")
 
     def attribute(self, name: str) -> str:
+        """Return an attribute, empty if there is none."""
         return self.xml.get(name, "")
 
     def children(self, tag: Optional[str] = None) -> Iterator["Element"]:
+        """Yield the child elements, or those with a tag."""
         for xml in self.xml.iterfind(tag) if tag else self.xml:
             if isinstance(xml.tag, str):
                 yield Element(xml, self.file, self.place, self.version)
 
     def child(self, *path: str) -> Optional["Element"]:
-        """The first element below this one along a path of tags."""
+        """Return the first element along a path of tags below this one, None if there is none."""
         element: Optional[Element] = self
         for tag in path:
             element = next(element.children(tag), None) if element else None
         return element
 
     def required(self, tag: str) -> "Element":
+        """Return the first child with a tag. Raises WorldError if there is none."""
         element = self.child(tag)
         if element is None:
             raise self.error(f"<{tag}> is missing")
@@ -62,10 +75,11 @@ class Element:
 
     @property
     def text(self) -> str:
+        """The text content without surrounding space."""
         return (self.xml.text or "").strip()
 
     def numbers(self, count: int) -> List[float]:
-        """The text as exactly ``count`` finite numbers."""
+        """Return the text as exactly ``count`` finite numbers. Raises WorldError."""
         words = self.text.split()
         try:
             values = [float(word) for word in words]
@@ -76,19 +90,19 @@ class Element:
         return values
 
     def lengths(self, count: int) -> Tuple[float, ...]:
-        """The text as ``count`` positive numbers."""
+        """Return the text as ``count`` positive numbers. Raises WorldError."""
         return self._positive(self.numbers(count), "", self.text)
 
     def sizes(self, count: int) -> Tuple[float, ...]:
-        """The text as ``count`` lengths of a shape, which Gazebo lets be 0."""
+        """Return the text as ``count`` lengths of a shape, which may be 0 as in Gazebo. Raises WorldError."""
         return self._positive([value or THINNEST for value in self.numbers(count)], "", self.text)
 
     def attribute_numbers(
         self, name: str, count: int, default: Optional[Sequence[float]] = None
     ) -> Tuple[float, ...]:
-        """An attribute as exactly ``count`` finite numbers; without a ``default`` it must be there.
+        """Return an attribute as exactly ``count`` finite numbers; without a ``default`` it is required.
 
-        Commas between them are read over, as Kinetic's urdfdom does.
+        Commas between the numbers are accepted, as by Kinetic's urdfdom. Raises WorldError.
         """
         text = self.xml.get(name)
         if text is None and default is not None:
@@ -102,39 +116,39 @@ class Element:
         return values
 
     def attribute_sizes(self, name: str, count: int) -> Tuple[float, ...]:
-        """An attribute as ``count`` lengths of a shape."""
+        """Return an attribute as ``count`` lengths of a shape. Raises WorldError."""
         values = [value or THINNEST for value in self.attribute_numbers(name, count)]
         return self._positive(values, f"{name} ", self.attribute(name))
 
-    def _positive(self, values: Sequence[float], what: str, said: str) -> Tuple[float, ...]:
+    def _positive(self, values: Sequence[float], what: str, text: str) -> Tuple[float, ...]:
         if min(values) <= 0.0:
-            raise self.error(f"{what}must be positive, got {said!r}")
+            raise self.error(f"{what}must be positive, got {text!r}")
         if max(values) > MAX_COORDINATE:
-            raise self.error(f"{what}must be at most {MAX_COORDINATE:g}, got {said!r}")
+            raise self.error(f"{what}must be at most {MAX_COORDINATE:g}, got {text!r}")
         return tuple(values)
 
     def flag(self, tag: str) -> bool:
-        """Whether the child ``tag`` says true; false if it is not there."""
+        """Return whether the child ``tag`` is true; False if there is none."""
         element = self.child(tag)
         return element is not None and element.text.lower() in ("1", "true")
 
     def raw_pose(self) -> Optional[np.ndarray]:
-        """The pose (4, 4) written in this element, in whatever frame; None if none is written."""
+        """Return the pose (4, 4) in this element's <pose>, whatever its frame; None if there is none."""
         element = self.child("pose")
         if element is None or not element.text:
             return None
         values = element.numbers(6)
         if not is_within(MAX_COORDINATE, *values):
-            raise element.error(f"nothing can be there, got {element.text!r}")
+            raise element.error(f"coordinates must be within {MAX_COORDINATE:g}, got {element.text!r}")
         return pose3(*values)
 
     def number(self, *path: str, default: float) -> float:
-        """The number along a path of tags; ``default`` if it is not there."""
+        """Return the number along a path of tags, by default ``default``."""
         element = self.child(*path)
         return element.numbers(1)[0] if element is not None else default
 
     def bound(self, *path: str, default: float) -> float:
-        """The number along a path of tags, infinite if it is too large to bound anything."""
+        """Return a limit along a path of tags; a number that is too large for a limit becomes infinite."""
         element = self.child(*path)
         try:
             value = float(element.text) if element is not None else default
@@ -145,7 +159,7 @@ class Element:
         return value if abs(value) < UNLIMITED else math.copysign(math.inf, value)
 
     def count(self, *path: str, most: int, default: int) -> int:
-        """The whole number from 1 to ``most`` along a path of tags; ``default`` if it is not there."""
+        """Return the integer from 1 to ``most`` along a path of tags, by default ``default``."""
         element = self.child(*path)
         if element is None:
             return default
@@ -156,7 +170,7 @@ class Element:
 
 
 def parse(path: Path) -> Element:
-    """The root element of an SDF file. Raises WorldError."""
+    """Return the root element of an SDF file. Raises WorldError."""
     try:
         return parse_text(read_bytes(path), str(path))
     except OSError as error:
@@ -164,7 +178,7 @@ def parse(path: Path) -> Element:
 
 
 def parse_text(text, file: str, roots: Sequence[str] = ("sdf", "gazebo")) -> Element:
-    """The root element of XML in memory, one of ``roots``; ``file`` names it in errors. Raises WorldError."""
+    """Return the root element, one of ``roots``, of XML text. Raises WorldError naming ``file``."""
     try:
         root = _root_of(text)
     except DefusedXmlException as error:
@@ -177,7 +191,7 @@ def parse_text(text, file: str, roots: Sequence[str] = ("sdf", "gazebo")) -> Ele
 
 
 def _root_of(text):
-    """The root of XML that is also read if attributes hold a bare "<", as Gazebo's own reader does."""
+    """Parse XML; like Gazebo's parser, accept a bare "<" in attributes."""
     try:
         return defusedxml.ElementTree.fromstring(text, forbid_dtd=False)
     except defusedxml.ElementTree.ParseError:
@@ -189,5 +203,5 @@ def _root_of(text):
 
 
 def version_of(text: str) -> Tuple[int, ...]:
-    """A version as numbers, so that 1.10 comes after 1.9."""
+    """Return a version as a tuple of integers, so that 1.10 sorts after 1.9."""
     return tuple(int(number) if _VERSION_NUMBER.match(number) else 0 for number in text.split("."))

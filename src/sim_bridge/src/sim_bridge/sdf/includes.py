@@ -1,4 +1,4 @@
-"""Where the files are that an SDF file refers to."""
+"""Finds the files that an SDF file refers to."""
 
 import os
 from pathlib import Path
@@ -11,18 +11,21 @@ from sim_bridge.sdf.element import parse_text, version_of
 
 
 def resolve(uri: str, beside: Path, model_folders: Sequence[Path]) -> Optional[Path]:
-    """The existing file or folder that ``uri`` names, or None.
+    """Return the existing file or folder that a URI names, None if there is none.
 
-    ``model://name/...`` is looked up in ``model_folders``, and leads out of none. ``file://`` and plain
-    paths are absolute, or relative to the folder ``beside`` and then to the model folders, as Gazebo does.
+    Args:
+        uri: ``model://name/...``, which is searched in the model folders and cannot leave them, or ``file://``
+            or a plain path, which is absolute, or relative to ``beside`` and then to the model folders.
+        beside: Folder of the file that holds the URI.
+        model_folders: Folders of models (GAZEBO_MODEL_PATH).
     """
     parts = parts_of(uri)
     if parts is None:
         return None
     path = Path(unquote(parts.netloc + parts.path))
     if parts.scheme == "model":
-        leads_out = ".." in Path(os.path.normpath(path)).parts
-        candidates = [] if leads_out else [folder / path for folder in model_folders]
+        leaves_folder = ".." in Path(os.path.normpath(path)).parts
+        candidates = [] if leaves_folder else [folder / path for folder in model_folders]
     elif parts.scheme in ("", "file"):
         candidates = [beside / path, *(folder / path for folder in model_folders)]
     else:
@@ -31,7 +34,7 @@ def resolve(uri: str, beside: Path, model_folders: Sequence[Path]) -> Optional[P
 
 
 def parts_of(uri: str) -> Optional[ParseResult]:
-    """Its scheme, its host and its path; None if it is no URI."""
+    """Return the parts of a URI, None if it is not valid."""
     try:
         return urlparse(uri)
     except ValueError:
@@ -39,12 +42,12 @@ def parts_of(uri: str) -> Optional[ParseResult]:
 
 
 def has_model(path: Path) -> bool:
-    """Whether that is an SDF file or the folder of a model."""
+    """Return whether a path is an SDF file or a model folder."""
     return path.is_file() or (path / "model.config").is_file()
 
 
 def model_file(folder: Path) -> Path:
-    """The newest SDF file that a model folder's ``model.config`` names. Raises WorldError."""
+    """Return the SDF file of the newest version in a model folder's ``model.config``. Raises WorldError."""
     if folder.is_file():
         return folder
     config_path = folder / "model.config"

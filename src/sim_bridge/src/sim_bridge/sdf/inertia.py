@@ -1,4 +1,4 @@
-"""<inertial> elements."""
+"""Reads <inertial> elements."""
 
 import numpy as np
 
@@ -7,19 +7,20 @@ from sim_bridge.sdf.element import Element
 from sim_bridge.sdf.warnings import SkippedElements
 from sim_bridge.world import Inertia
 
-# SDF's own default, kg.
+# SDF's default [kg].
 DEFAULT_MASS = 1.0
 
 
 def read_mass(link: Element) -> float:
+    """Return the mass of a link [kg]. Raises WorldError."""
     mass = link.child("inertial", "mass")
     return mass.lengths(1)[0] if mass is not None else DEFAULT_MASS
 
 
 def read_inertia(link: Element, warnings: SkippedElements) -> Inertia:
-    """The centre of mass and the principal moments of a link.
+    """Return the centre of mass and the principal moments of a link.
 
-    Moments that no body can have, as many worlds hold for what they never move, are left out with a warning.
+    Moments that are not positive, as in many worlds for links that never move, are ignored with a warning.
     """
     inertial = link.child("inertial")
     if inertial is None:
@@ -33,10 +34,10 @@ def read_inertia(link: Element, warnings: SkippedElements) -> Inertia:
     try:
         moments, axes_xyz = np.linalg.eigh(_matrix(matrix))
     except WorldError as error:
-        warnings.skip(matrix, f"left out: {error}", kind="inertia")
+        warnings.skip(matrix, f"ignored: {error}", kind="inertia")
         return Inertia(pose)
     if moments[0] <= 0.0:
-        warnings.skip(matrix, "left out: its moments are not positive", kind="inertia")
+        warnings.skip(matrix, "ignored: its moments are not positive", kind="inertia")
         return Inertia(pose)
     turned = pose.copy()
     turned[:3, :3] = pose[:3, :3] @ (axes_xyz * np.sign(np.linalg.det(axes_xyz)))
@@ -44,7 +45,7 @@ def read_inertia(link: Element, warnings: SkippedElements) -> Inertia:
 
 
 def _matrix(inertia: Element) -> np.ndarray:
-    """Moments and products (3, 3) of inertia. Raises WorldError if one is no number."""
+    """Return the inertia matrix (3, 3). Raises WorldError."""
     xx, xy, xz, yy, yz, zz = (
         inertia.number(f"i{axes}", default=1.0 if axes[0] == axes[1] else 0.0)
         for axes in ("xx", "xy", "xz", "yy", "yz", "zz")

@@ -1,7 +1,7 @@
-"""<joint> elements."""
+"""Reads <joint> elements."""
 
 from dataclasses import replace
-from typing import Dict, List, Optional, Sequence
+from typing import Callable, Dict, List, Optional, Sequence
 
 import numpy as np
 
@@ -18,9 +18,17 @@ KINDS = ("fixed", "revolute", "prismatic")
 def read_joint(
     joint: Element, model: SdfModel, name: str, links: Dict[str, np.ndarray], warnings: SkippedElements
 ) -> Joint:
-    """A joint of the model ``name``; ``links``: where each link is in the model by its name, (4, 4).
+    """Read a joint.
 
-    A kind that is not known holds its child as it is. Raises WorldError.
+    Args:
+        joint: The element.
+        model: The model that it belongs to.
+        name: Full name of the model.
+        links: Pose (4, 4) in the model of each link, by name.
+        warnings: Receives a warning if the type is not supported; the joint is fixed then.
+
+    Raises:
+        WorldError: A value is not valid or a link does not exist.
     """
     warnings.check_children(joint)
     kind = joint.attribute("type")
@@ -28,7 +36,7 @@ def read_joint(
     if not child:
         raise joint.error("the child must be a link of the model, not the world")
     if kind not in KINDS:
-        warnings.skip(joint, f"a {kind or 'nameless kind of'} joint is held as it is", kind=("joint", kind))
+        warnings.skip(joint, f"joint type {kind!r} is not supported, treated as fixed", kind=("joint", kind))
         kind = "fixed"
     in_model = model.frames.pose_of(joint, child)
     full = _Scope(name)
@@ -49,7 +57,7 @@ def read_joint(
 
 
 class _Scope:
-    """Full names of what belongs to the model ``name``."""
+    """Full names of the joints and links of a model."""
 
     def __init__(self, name: str):
         self._name = name
@@ -62,7 +70,7 @@ class _Scope:
 
 
 def _link_named(joint: Element, end: str, links: Dict[str, np.ndarray]) -> str:
-    """The link at an end of a joint; empty for the world."""
+    """Return the name of a joint's parent or child; empty for the world."""
     element = joint.required(end)
     if element.text == "world":
         return ""
@@ -96,7 +104,7 @@ def _moving(
 
 
 def _direction(axis: Element, in_model: np.ndarray, frames: SdfFrames) -> np.ndarray:
-    """The axis (3,) in the joint's frame; before SDF 1.5, or if it says so, it is given in the model's."""
+    """Return the axis (3,) in the joint frame; before SDF 1.5 it is given in the model frame."""
     xyz = axis.child("xyz")
     direction = np.array(xyz.numbers(3) if xyz is not None else (0.0, 0.0, 1.0))
     length = np.linalg.norm(direction)
@@ -113,10 +121,13 @@ def _direction(axis: Element, in_model: np.ndarray, frames: SdfFrames) -> np.nda
     return direction / length
 
 
-def started(joint: Joint, before: np.ndarray, now: np.ndarray) -> Joint:
-    """The joint with its start where its child has been put.
+def with_start_position(joint: Joint, before: np.ndarray, now: np.ndarray) -> Joint:
+    """Return a joint with the start position that follows from the present pose of its child.
 
-    ``before``, ``now``: (4, 4), its child seen from its parent at position 0 and at the start.
+    Args:
+        joint: The joint.
+        before: Pose (4, 4) of the child in the parent at position 0.
+        now: Pose (4, 4) of the child in the parent at the start.
     """
     moved = inverse(before @ joint.pose_in_child) @ now @ joint.pose_in_child
     if joint.kind == "prismatic":
@@ -126,8 +137,8 @@ def started(joint: Joint, before: np.ndarray, now: np.ndarray) -> Joint:
     return replace(joint, start=float(np.arctan2(sine, (np.trace(moved[:3, :3]) - 1.0) / 2.0)))
 
 
-def trees_of(joints: Sequence[Joint], warn) -> List[Joint]:
-    """The joints but for those that close a loop or give a link a second parent, which ``warn`` is told."""
+def without_loops(joints: Sequence[Joint], warn: Callable[[Joint], None]) -> List[Joint]:
+    """Return the joints that form trees; call ``warn`` for each one that closes a loop."""
     parents: Dict[str, str] = {}
     kept = []
     for joint in joints:

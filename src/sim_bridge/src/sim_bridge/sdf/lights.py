@@ -1,15 +1,15 @@
-"""<light> elements of a world."""
+"""Reads the <light> elements of a world."""
 
 from sim_bridge.sdf.element import Element
 from sim_bridge.sdf.models import built_in
 from sim_bridge.world import Light
 
-# What Gazebo's model://sun is.
+# Gazebo's model://sun.
 SUN = Light("sun", (0.8, 0.8, 0.8, 1.0), (0.9, 0.01, 0.001))
 
 
 def read_lights(world: Element):
-    """The lights of a world, those of included suns too."""
+    """Yield the lights of a world, including those of included suns."""
     for light in world.children("light"):
         yield _light(light)
     for include in world.children("include"):

@@ -1,4 +1,4 @@
-"""A world's models as a tree: includes found and read, names and poses not yet made absolute."""
+"""Reads the models of a world, with their includes, as trees with relative names and poses."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,7 +13,7 @@ from sim_bridge.sdf.supported import DRIVES, plugin_name
 from sim_bridge.sdf.warnings import SkippedElements
 
 MAX_INCLUDE_DEPTH = 20
-# Names of Gazebo's own models that need no folder.
+# Gazebo models that are built in.
 GROUND_PLANE, SUN = "ground_plane", "sun"
 _GROUND_PLANE_SDF = """<sdf version='1.6'><model name='ground_plane'><static>1</static><link name='link'>
 <collision name='collision'><geometry><plane><normal>0 0 1</normal></plane></geometry></collision>
@@ -23,10 +23,15 @@ _GROUND_PLANE_SDF = """<sdf version='1.6'><model name='ground_plane'><static>1</
 
 @dataclass
 class SdfModel:
-    """A <model>, or what an <include> names.
+    """A <model>, or the model that an <include> names.
 
-    ``placed_by``: the element that says where it stands, the include if that has a pose. ``folder``: what
-    relative paths in it start from.
+    Attributes:
+        name: Its name.
+        element: The <model> element.
+        placed_by: The element with its pose: the include if that has one.
+        folder: Folder to which relative paths in it refer.
+        is_static: Whether it is static.
+        nested: Models nested in it.
     """
 
     name: str
@@ -42,26 +47,26 @@ class SdfModel:
         for joint in self.element.children("joint"):
             child = joint.child("child")
             self.frames.declare(joint.name, joint, child.text if child is not None else "")
-        # After the joints: before SDF 1.7 one may be named like a link, and then the name means the link.
+        # After the joints: before SDF 1.7 a joint may have the name of a link, which then refers to the link.
         for link in self.element.children("link"):
             self.frames.declare(link.name, link)
         declare_frames(self.frames, self.element)
 
     @property
     def is_driven(self) -> bool:
-        """Whether it is a robot: then its plugins and sensors are no matter of the world's."""
+        """Whether it has a drive plugin and is therefore a robot."""
         return not self.is_static and any(
             plugin_name(plugin) in DRIVES for plugin in self.element.children("plugin")
         )
 
     def add(self, model: "SdfModel") -> None:
-        """``model`` is nested in this one."""
+        """Add a nested model."""
         self.nested.append(model)
         self._by_name[model.name] = model
         self.frames.declare(model.name, model.placed_by, inside=model.placement())
 
     def placement(self) -> np.ndarray:
-        """Of the frame in this model, (4, 4), that its pose is the pose of."""
+        """Return the pose (4, 4) in this model of the frame that its <pose> places."""
         placement = self.placed_by.child("placement_frame")
         name = placement.text if placement is not None else self.element.attribute("placement_frame")
         return self.frames.frame(name, self.element)
@@ -71,13 +76,18 @@ class SdfModel:
 
 
 def declare_frames(frames: SdfFrames, parent: Element) -> None:
-    """Declares the <frame> elements of a world or model."""
+    """Declare the <frame> elements of a world or model."""
     for frame in parent.children("frame"):
         frames.declare(frame.name, frame, frame.attribute("attached_to"))
 
 
 class ModelReader:
-    """Finds the models of a world, in ``model_folders`` those it includes; each file is read once."""
+    """Reads models and includes; each file is read once.
+
+    Args:
+        model_folders: Folders of included models (GAZEBO_MODEL_PATH).
+        warnings: Receives warnings about missing models and unsupported elements.
+    """
 
     def __init__(self, model_folders: Sequence[Path], warnings: SkippedElements):
         self._model_folders = model_folders
@@ -87,7 +97,7 @@ class ModelReader:
     def models_in(
         self, parent: Element, folder: Path, static: bool = False, depth: int = 0
     ) -> Iterator[SdfModel]:
-        """The models that stand in a <world>, or in a <model>, then ``static`` if that is."""
+        """Yield the models in a <world>, or in a <model>, which are ``static`` if that is."""
         for element in parent.children("model"):
             yield self.model(element, element, folder, element.name, static, depth)
         for include in parent.children("include"):
@@ -104,6 +114,7 @@ class ModelReader:
         static: bool = False,
         depth: int = 0,
     ) -> SdfModel:
+        """Read a <model> with its nested models."""
         static = static or element.flag("static")
         model = SdfModel(name, element, placed_by, folder, static)
         if not model.is_driven:
@@ -115,15 +126,18 @@ class ModelReader:
     def included(
         self, include: Element, folder: Path, static: bool = False, depth: int = 0
     ) -> Optional[SdfModel]:
-        """What an <include> names; its own <name>, <pose> and <static> win."""
+        """Read the model that an <include> names, None if it is missing.
+
+        The <name>, <pose> and <static> of the include take precedence.
+        """
         if depth >= MAX_INCLUDE_DEPTH:
             raise include.error("includes itself")
         self._warnings.check_children(include)
         uri = include.required("uri").text
-        own = built_in(uri)
-        if own == SUN:
+        builtin = built_in(uri)
+        if builtin == SUN:
             return None
-        if own == GROUND_PLANE:
+        if builtin == GROUND_PLANE:
             model = parse_text(_GROUND_PLANE_SDF, uri).required("model")
         else:
             found = resolve(uri, folder, self._model_folders)
@@ -150,7 +164,7 @@ class ModelReader:
 
 
 def built_in(uri: str) -> str:
-    """The name of a model that may be Gazebo's own: ``model://ground_plane``, or Ground Plane of Fuel."""
+    """Return the name of a model that may be built in: of ``model://ground_plane``, or a Fuel URI."""
     scheme, _, path = uri.partition("://")
     if scheme == "model":
         return path.strip("/")

@@ -1,4 +1,4 @@
-"""From an SDF file to a World: models, links, collisions and their poses."""
+"""Reads worlds and models from SDF."""
 
 from pathlib import Path
 from typing import Iterator, List, Optional, Sequence, Tuple, cast
@@ -13,10 +13,10 @@ from sim_bridge.sdf.actors import read_actor
 from sim_bridge.sdf.element import Element, parse, parse_text
 from sim_bridge.sdf.frames import SdfFrames
 from sim_bridge.sdf.inertia import read_inertia, read_mass
-from sim_bridge.sdf.joints import read_joint, started, trees_of
+from sim_bridge.sdf.joints import read_joint, with_start_position, without_loops
 from sim_bridge.sdf.lights import read_lights
 from sim_bridge.sdf.models import ModelReader, SdfModel, declare_frames
-from sim_bridge.sdf.shapes.colours import read_colour, read_glow
+from sim_bridge.sdf.shapes.colours import read_colour, read_emissive
 from sim_bridge.sdf.shapes.geometry import MissingMeshError, UnsupportedGeometryError, read_shape
 from sim_bridge.sdf.state import ModelState, read_states
 from sim_bridge.sdf.warnings import SkippedElements
@@ -36,10 +36,16 @@ DEFAULT_GRAVITY = 9.8
 
 
 def load_world(path, model_folders: Sequence[Path] = (), strict: bool = False) -> World:
-    """The world of an SDF file. ``model_folders`` are searched for ``model://`` (GAZEBO_MODEL_PATH).
+    """Load the world of an SDF file.
 
-    What cannot be honoured is named in the world's ``warnings``; if ``strict``, a mesh or model that is
-    missing is an error. Raises WorldError.
+    Args:
+        path: The file.
+        model_folders: Folders that are searched for ``model://`` URIs (GAZEBO_MODEL_PATH).
+        strict: Treat a missing mesh or model as an error; otherwise it is ignored with a warning in
+            ``World.warnings``, like all content that is not supported.
+
+    Raises:
+        WorldError: The file cannot be read or holds a value that is not valid.
     """
     path = Path(path)
     world = parse(path).required("world")
@@ -51,9 +57,17 @@ def load_world(path, model_folders: Sequence[Path] = (), strict: bool = False) -
 def read_model(
     xml, name: str, pose: np.ndarray, model_folders: Sequence[Path] = (), strict: bool = False
 ) -> World:
-    """A world of the one model described by SDF text, called ``name`` and placed at ``pose`` (4, 4).
+    """Return a world with the one model of an SDF text.
 
-    Instead of a model the text may hold a world that includes it.
+    Args:
+        xml: The text: a model, or a world that includes one.
+        name: Name of the model.
+        pose: Pose (4, 4) in the world.
+        model_folders: Folders that are searched for ``model://`` URIs.
+        strict: Treat a missing mesh or model as an error.
+
+    Raises:
+        WorldError: The text cannot be read or holds a value that is not valid.
     """
     reader = _Reader(tuple(model_folders), SkippedElements(strict))
     root = parse_text(xml, name)
@@ -66,7 +80,7 @@ def read_model(
 
 
 class _Reader:
-    """Collects the bodies and joints of models, and what was left out."""
+    """Collects bodies, joints, robots, lights, trajectories and warnings."""
 
     def __init__(self, model_folders: Tuple[Path, ...], warnings: SkippedElements):
         self._bodies: List[Body] = []
@@ -79,7 +93,7 @@ class _Reader:
         self._models = ModelReader(model_folders, warnings)
 
     def world(self, name: str, gravity: float = DEFAULT_GRAVITY) -> World:
-        """All that has been read."""
+        """Return a world of all that has been read."""
         return World(
             name,
             tuple(self._bodies),
@@ -92,14 +106,15 @@ class _Reader:
         )
 
     def read_world(self, world: Element, folder: Path) -> None:
+        """Read a <world>."""
         self._warnings.check_children(world)
         for physics in world.children("physics"):
             self._warnings.check_children(physics)
         self._lights.extend(read_lights(world))
         states = list(world.children("state"))
         insertions = [inserted for state in states for inserted in state.children("insertions")]
-        gone = [
-            name.text for state in states for lost in state.children("deletions") for name in lost.children()
+        deleted = [
+            name.text for state in states for part in state.children("deletions") for name in part.children()
         ]
         overrides = read_states(states)
         parts = [world, *insertions]
@@ -109,26 +124,26 @@ class _Reader:
         for model in models:
             frames.declare(model.name, model.placed_by, inside=model.placement())
         for model in models:
-            if model.name not in gone:
-                self._put(model, frames.frame(model.name, model.element), overrides.get(model.name))
+            if model.name not in deleted:
+                self._add_model(model, frames.frame(model.name, model.element), overrides.get(model.name))
         for actor in world.children("actor"):
-            body, course = read_actor(actor, self._warnings)
+            body, trajectory = read_actor(actor, self._warnings)
             self._bodies.append(body)
-            self._trajectories += [course] if course else []
+            self._trajectories += [trajectory] if trajectory else []
 
     def read_model(self, element: Element, name: str, pose: np.ndarray) -> None:
-        self._put(self._models.model(element, element, Path(), name), pose, None)
+        self._add_model(self._models.model(element, element, Path(), name), pose, None)
 
     def read_include(self, include: Element, name: str, pose: np.ndarray) -> None:
         model = self._models.included(include, Path())
         if model is not None:
             model.name = name
-            self._put(model, pose, None)
+            self._add_model(model, pose, None)
 
-    def _put(self, model: SdfModel, in_world: np.ndarray, state: Optional[ModelState]) -> None:
-        """Adds a model of the world, if it is driven as a robot."""
+    def _add_model(self, model: SdfModel, in_world: np.ndarray, state: Optional[ModelState]) -> None:
+        """Add a model; one with a drive plugin is added as a robot."""
         bodies, joints = len(self._bodies), len(self._joints)
-        self._place(model, in_world, state)
+        self._add_links(model, in_world, state)
         if model.is_driven:
             robot = DrivenModel(
                 model.name, model.element, tuple(self._bodies[bodies:]), tuple(self._joints[joints:])
@@ -136,7 +151,7 @@ class _Reader:
             self._robots.append(robot)
             del self._bodies[bodies:], self._joints[joints:]
 
-    def _place(
+    def _add_links(
         self,
         model: SdfModel,
         in_world: np.ndarray,
@@ -144,20 +159,25 @@ class _Reader:
         scope: str = "",
         outermost: Optional[np.ndarray] = None,
     ) -> None:
-        """Adds each link of a model at ``in_world``, and of the models nested in it, as a body.
+        """Add the links and joints of a model and of its nested models.
 
-        ``outermost``: (4, 4), pose in the world of the outermost model that this one is nested in, if any.
+        Args:
+            model: The model.
+            in_world: Pose (4, 4) of the model.
+            state: Saved state that overrides its poses.
+            scope: Prefix of its full name.
+            outermost: Pose (4, 4) of the outermost model that it is nested in, if any.
         """
         state = state or ModelState()
         in_world = in_world if state.pose is None else state.pose
         outermost = in_world if outermost is None else outermost
         full_name = scope + model.name
         for link in model.element.children("link"):
-            place = state.links.get(link.name, in_world @ model.frames.frame(link.name, link))
-            self._bodies.append(self._body(link, model, f"{full_name}::{link.name}", place, outermost, state))
+            pose = state.links.get(link.name, in_world @ model.frames.frame(link.name, link))
+            self._bodies.append(self._body(link, model, f"{full_name}::{link.name}", pose, outermost, state))
         for nested in model.nested:
-            place = in_world @ model.frames.frame(nested.name, nested.element)
-            self._place(nested, place, state.models.get(nested.name), full_name + "::", outermost)
+            pose = in_world @ model.frames.frame(nested.name, nested.element)
+            self._add_links(nested, pose, state.models.get(nested.name), full_name + "::", outermost)
         if not model.is_static:
             self._add_joints(model, full_name)
 
@@ -166,17 +186,17 @@ class _Reader:
         elements = {joint.name: joint for joint in model.element.children("joint")}
         joints = [read_joint(joint, model, name, links, self._warnings) for joint in elements.values()]
 
-        def skip(joint: Joint) -> None:
-            self._warnings.skip(elements[joint.name[len(name) + 2 :]], "closes a loop, left out")
+        def warn(joint: Joint) -> None:
+            self._warnings.skip(elements[joint.name[len(name) + 2 :]], "closes a loop, ignored")
 
         placed = {body.name: body.pose_in_world for body in self._bodies}
         in_model = {f"{name}::{link}": pose for link, pose in links.items()}
-        for joint in trees_of(joints, skip):
+        for joint in without_loops(joints, warn):
             if joint.kind != "fixed" and joint.parent:
                 before, now = (
                     inverse(poses[joint.parent]) @ poses[joint.child] for poses in (in_model, placed)
                 )
-                joint = started(joint, before, now)
+                joint = with_start_position(joint, before, now)
             self._joints.append(joint)
 
     def _body(
@@ -214,7 +234,7 @@ class _Reader:
     ) -> Iterator[Collision]:
         for part in link.children("collision"):
             self._warnings.check_children(part)
-            shape = self._solid(part, model, state)
+            shape = self._collision_shape(part, model, state)
             if shape is not None:
                 laser_retro = part.number("laser_retro", default=0.0)
                 yield Collision(shape, _pose_in_link(part, link, model, in_model), laser_retro, part.name)
@@ -224,31 +244,31 @@ class _Reader:
     ) -> Iterator[Visual]:
         for part in link.children("visual"):
             self._warnings.check_children(part)
-            look = self._look(part, model, state)
-            if look is not None:
+            shape = self._visual_shape(part, model, state)
+            if shape is not None:
                 placed = _pose_in_link(part, link, model, in_model)
-                yield Visual(look, placed, read_colour(part), read_glow(part))
+                yield Visual(shape, placed, read_colour(part), read_emissive(part))
 
-    def _look(self, part: Element, model: SdfModel, state: ModelState) -> Optional[VisualShape]:
+    def _visual_shape(self, part: Element, model: SdfModel, state: ModelState) -> Optional[VisualShape]:
         try:
             shape = read_shape(part.required("geometry"), model.folder, self._model_folders)
         except MissingMeshError as missing:
-            shape = missing.instead
+            shape = missing.fallback
             self._warnings.missing(
-                part, str(missing), "left out" if shape is None else "only its footprint is here"
+                part, str(missing), "ignored" if shape is None else "only its footprint is used"
             )
-        except UnsupportedGeometryError as left_out:
-            self._warnings.skip(part, f"{left_out}, left out", kind=("geometry", str(left_out)))
+        except UnsupportedGeometryError as error:
+            self._warnings.skip(part, f"{error}, ignored", kind=("geometry", str(error)))
             return None
         x, y, z = state.scale
         return None if shape is None else scaled(shape, (x, y, z))
 
-    def _solid(self, part: Element, model: SdfModel, state: ModelState) -> Optional[Shape]:
-        look = self._look(part, model, state)
-        return load_mesh(look) if isinstance(look, MeshFile) else cast(Optional[Shape], look)
+    def _collision_shape(self, part: Element, model: SdfModel, state: ModelState) -> Optional[Shape]:
+        shape = self._visual_shape(part, model, state)
+        return load_mesh(shape) if isinstance(shape, MeshFile) else cast(Optional[Shape], shape)
 
     def _surface(self, link: Element) -> SurfaceProperties:
-        """Of the link's first collision; friction at most 1: Gazebo's worlds say 100 for "grips"."""
+        """Return the surface of a link's first collision; friction is clipped to 1 (many worlds have 100)."""
         surface = link.child("collision", "surface")
         if surface is None:
             return SurfaceProperties()
@@ -259,13 +279,13 @@ class _Reader:
 
 
 def _links_of(model: SdfModel, scope: str = "") -> List[Tuple[str, np.ndarray]]:
-    """The links of a model and of those nested in it by their names there, with their poses (4, 4) in it."""
+    """Return the names and the poses (4, 4) in a model of its links and of those of nested models."""
     links = [
         (scope + link.name, model.frames.frame(link.name, link)) for link in model.element.children("link")
     ]
     for nested in model.nested:
-        place = model.frames.frame(nested.name, nested.element)
-        links += [(scope + name, place @ pose) for name, pose in _links_of(nested, f"{nested.name}::")]
+        nested_pose = model.frames.frame(nested.name, nested.element)
+        links += [(scope + name, nested_pose @ pose) for name, pose in _links_of(nested, f"{nested.name}::")]
     return links
 
 

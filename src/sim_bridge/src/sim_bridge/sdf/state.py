@@ -1,4 +1,4 @@
-"""The <state> block: where Gazebo's models stood, and how they were stretched, when the world was saved."""
+"""Reads <state> elements: poses and scales of models when Gazebo saved the world."""
 
 from dataclasses import dataclass, field
 from typing import Dict, Iterable, Optional, Tuple
@@ -10,9 +10,13 @@ from sim_bridge.sdf.element import Element
 
 @dataclass
 class ModelState:
-    """Poses (4, 4) in the world that override those of a model, its links and nested models.
+    """Saved state of a model, which overrides its description.
 
-    ``scale``: factors of its shapes along their axes.
+    Attributes:
+        pose: Pose (4, 4) in the world.
+        scale: Scale factors of its shapes along their axes.
+        links: Poses (4, 4) in the world of links, by name.
+        models: States of nested models, by name.
     """
 
     pose: Optional[np.ndarray] = None
@@ -22,9 +26,9 @@ class ModelState:
 
 
 def read_states(parents: Iterable[Element]) -> Dict[str, ModelState]:
-    """The states of the models below ``parents``, by name; the last one written counts.
+    """Return the states of the models below ``parents``, by name; the last one of a name counts.
 
-    The poses of models and links are all given in the world frame, as Gazebo saves them.
+    All poses are in the world frame, as Gazebo saves them.
     """
     states: Dict[str, ModelState] = {}
     for parent in parents:

@@ -1,6 +1,6 @@
-"""The elements of SDF that are honoured, and those that change nothing here, by the element they stand in.
+"""SDF elements and Gazebo plugins that are supported, and those that are ignored without a warning.
 
-What is in neither table is named in a warning.
+Elements are listed by their parent element. All others are ignored with a warning.
 """
 
 from typing import Dict, FrozenSet
@@ -28,7 +28,7 @@ SUPPORTED: Dict[str, FrozenSet[str]] = {
     "include": _tags("uri name pose static placement_frame"),
 }
 
-# Light and other scenery, settings of Gazebo's own solver and editor, and a visual's finer looks.
+# Scenery, settings of Gazebo's solver and editor, and details of visuals.
 IGNORED: Dict[str, FrozenSet[str]] = {
     "world": _tags("light scene gui spherical_coordinates magnetic_field atmosphere audio wind"),
     "insertions": _tags("light"),
@@ -47,7 +47,7 @@ IGNORED: Dict[str, FrozenSet[str]] = {
 
 DRIVES = ("gazebo_ros_diff_drive", "gazebo_ros_skid_steer_drive", "gazebo_ros_kobuki")
 
-# Plugins of worlds whose work is done here without them: ROS's interface, colliding actors, a gripper.
+# World plugins whose work is done here without them: the ROS interface, colliding actors, a gripper.
 REDUNDANT_PLUGINS = frozenset(
     "gazebo_ros_init gazebo_ros_factory gazebo_ros_api_plugin gazebo_ros_paths_plugin gazebo_ros_state "
     "gazebo_ros_properties gazebo_ros_force_system actor_collisions ActorCollisionsPlugin GrabPlugin".split()
@@ -55,7 +55,7 @@ REDUNDANT_PLUGINS = frozenset(
 
 
 def plugin_name(plugin: Element) -> str:
-    """What a <plugin> loads, without what differs between systems: ``gazebo_ros_laser``."""
+    """Return the library of a <plugin> without prefix and suffix, e.g. ``gazebo_ros_laser``."""
     name = plugin.attribute("filename").rsplit("/", 1)[-1]
     name = name[3:] if name.startswith("lib") else name
     return name[:-3] if name.endswith(".so") else name

@@ -1,1 +1,1 @@
-"""What a world looks like: cuts, drawings, pictures, its true map."""
+"""Views of a world: cross-sections for range finders, triangles for cameras, images, true maps."""

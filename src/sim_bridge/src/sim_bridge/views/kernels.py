@@ -1,4 +1,4 @@
-"""Kernels of what is seen. Imported late: numba takes long to come, and most commands see nothing."""
+"""Numba kernels of ray casting and rasterization; imported late, since importing numba takes long."""
 
 import math
 
@@ -7,69 +7,85 @@ import numpy as np
 
 
 @numba.njit(cache=True)
-def cast_rays(segments, x, y, first, increment, count, sight):
-    """Walks through the segments and gives each to the beams between the bearings of its two ends."""
+def _is_out_of_range(a, b, max_range):
+    """Return whether the coordinates of both ends of a segment are beyond the range on the same side."""
+    return min(a, b) > max_range or max(a, b) < -max_range
+
+
+@numba.njit(cache=True)
+def cast_rays(segments, x, y, first, increment, count, max_range):
+    """Cast beams at segments: each segment is intersected with the beams between its two ends."""
     turn = 2.0 * math.pi
     first = (first + math.pi) % turn - math.pi
     ranges, nearest = np.full(count, np.inf), np.full(count, -1)
-    # Most beams pass several segments.
+    # The direction of each beam, since most beams meet several segments.
     cosines, sines = np.empty(count), np.empty(count)
     c, s, c_next, s_next = math.cos(first), math.sin(first), math.cos(increment), math.sin(increment)
     for beam in range(count):
         cosines[beam], sines[beam] = c, s
         c, s = c * c_next - s * s_next, s * c_next + c * s_next
-    beams_a_radian = 1.0 / increment
+    beams_per_radian = 1.0 / increment
     # Most segments begin where the one before ends.
     end_x, end_y, end_bearing = math.inf, math.inf, 0.0
     for i in range(segments.shape[0]):
         ax, ay = segments[i, 0] - x, segments[i, 1] - y
         bx, by = segments[i, 2] - x, segments[i, 3] - y
-        if min(ax, bx) > sight or max(ax, bx) < -sight or min(ay, by) > sight or max(ay, by) < -sight:
+        if _is_out_of_range(ax, bx, max_range) or _is_out_of_range(ay, by, max_range):
             continue
         side_x, side_y = bx - ax, by - ay
         area = ax * side_y - ay * side_x
         begin_bearing = end_bearing if ax == end_x and ay == end_y else math.atan2(ay, ax)
         end_x, end_y, end_bearing = bx, by, math.atan2(by, bx)
-        # Seen from here the segment runs counter-clockwise from its right end to its left end.
+        # Seen from the sensor, the segment runs counter-clockwise from its right end to its left end.
         right = begin_bearing if area > 0.0 else end_bearing
         span = abs(end_bearing - begin_bearing)
         span = min(span, turn - span)
         start = right - first if right >= first else right - first + turn
         for shift in (0.0, turn):
-            low = max(math.ceil((start - shift) * beams_a_radian - 1e-9), 0)
-            high = min(math.floor((start + span - shift) * beams_a_radian + 1e-9), count - 1)
+            low = max(math.ceil((start - shift) * beams_per_radian - 1e-9), 0)
+            high = min(math.floor((start + span - shift) * beams_per_radian + 1e-9), count - 1)
             for beam in range(low, high + 1):
                 across = cosines[beam] * side_y - sines[beam] * side_x
                 if across != 0.0:
                     distance = area / across
-                    if 0.0 <= distance <= sight and distance < ranges[beam]:
+                    if 0.0 <= distance <= max_range and distance < ranges[beam]:
                         ranges[beam], nearest[beam] = distance, i
     return ranges, nearest
 
 
 @numba.njit(cache=True)
 def measure_ranges(
-    true_ranges, sigma, draws, chance, dropouts, max_readings, too_near, no_return, nearest, sight, farthest
+    true_ranges,
+    sigma,
+    draws,
+    chance,
+    dropouts,
+    max_readings,
+    below_min,
+    no_return,
+    nearest,
+    max_range,
+    farthest,
 ):
-    """What a range finder tells of each true range, float32; by chance some beams fail."""
-    told = np.empty(true_ranges.size, dtype=np.float32)
+    """Return the measured ranges, float32: with noise, limits and random failures."""
+    measured = np.empty(true_ranges.size, dtype=np.float32)
     for beam in range(true_ranges.size):
         value = true_ranges[beam] + sigma * draws[beam]
         if value < nearest:
-            value = too_near
-        if value > sight:
+            value = below_min
+        if value > max_range:
             value = no_return
         if chance.size > 0 and chance[beam] < dropouts:
             value = no_return
         if chance.size > 0 and chance[beam] > 1.0 - max_readings:
             value = farthest
-        told[beam] = value
-    return told
+        measured[beam] = value
+    return measured
 
 
 @numba.njit(cache=True)
-def rasterize(triangles, colours, scale, centre_x, centre_y, near, far, perspective, picture, depth):
-    """Cuts each triangle off at the near plane and fills what is left of it, as a fan."""
+def rasterize(triangles, colours, scale, centre_x, centre_y, near, far, perspective, image, depth):
+    """Clip each triangle at the near plane and fill the remaining polygon as a fan."""
     corners = np.empty((4, 3))
     for t in range(triangles.shape[0]):
         count = 0
@@ -91,12 +107,12 @@ def rasterize(triangles, colours, scale, centre_x, centre_y, near, far, perspect
             if perspective:
                 corners[i, 2] = 1.0 / corners[i, 2]
         for i in range(1, count - 1):
-            _fill(corners[0], corners[i], corners[i + 1], colours[t], far, perspective, picture, depth)
+            _fill(corners[0], corners[i], corners[i + 1], colours[t], far, perspective, image, depth)
 
 
 @numba.njit(cache=True)
-def _fill(a, b, c, colour, far, perspective, picture, depth):
-    """Pixels whose centre lies in a triangle; 1 / z (or z, without perspective) is linear in the picture."""
+def _fill(a, b, c, colour, far, perspective, image, depth):
+    """Fill the pixels whose centre is in a triangle; 1 / z (z, without perspective) is linear there."""
     height, width = depth.shape
     area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
     if area == 0.0:
@@ -116,6 +132,6 @@ def _fill(a, b, c, colour, far, perspective, picture, depth):
             z = 1.0 / value if perspective else value
             if z < depth[row, col] and z <= far:
                 depth[row, col] = z
-                picture[row, col, 0] = colour[0]
-                picture[row, col, 1] = colour[1]
-                picture[row, col, 2] = colour[2]
+                image[row, col, 0] = colour[0]
+                image[row, col, 1] = colour[1]
+                image[row, col, 2] = colour[2]

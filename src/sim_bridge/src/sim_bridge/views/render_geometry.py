@@ -1,4 +1,4 @@
-"""What can be seen of the bodies of a world, as triangles with colours."""
+"""Triangles and colours of bodies, for cameras and images."""
 
 import math
 from dataclasses import dataclass
@@ -14,92 +14,101 @@ from sim_bridge.views.rasterizer import shade
 from sim_bridge.world import Body, Colour, Visual
 
 GREY: Colour = (0.7, 0.7, 0.7)
-# Half the width of what is drawn of an endless plane, metres, and its number of tiles along it.
-PLANE_REACH, PLANE_TILES = 60.0, 12
+# Half the width of the square drawn for an infinite plane [m], and its number of tiles along a side.
+PLANE_EXTENT, PLANE_TILES = 60.0, 12
 CIRCLE_CORNERS = 24
 
-# Triangles (T, 3, 3) in a body's own frame, their colours and what they glow of themselves (T, 3), 0 to 1.
-_Looks = Tuple[np.ndarray, np.ndarray, np.ndarray]
+# Triangles (T, 3, 3) in the body frame, their colours and emissive colours (T, 3), 0 to 1.
+_Appearance = Tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 @dataclass(frozen=True, eq=False)
-class _Drawn:
-    """A body's looks, and its triangles (T, 3, 3) in the world with the body ``at`` (4, 4)."""
+class _RenderedBody:
+    """Appearance of a body, and its triangles (T, 3, 3) in the world for the pose ``pose`` (4, 4)."""
 
-    looks: _Looks
-    at: np.ndarray
+    appearance: _Appearance
+    pose: np.ndarray
     triangles: np.ndarray
     colours: np.ndarray
 
 
 class RenderGeometry:
-    """The triangles of all bodies, where those that move are. A body without visuals shows its solids."""
+    """The triangles of all bodies at their present poses. A body without visuals shows its collisions."""
 
     def __init__(self):
-        self._still: Dict[str, _Drawn] = {}
-        self._moving: Dict[str, _Drawn] = {}
-        self._all_still: Optional[Tuple[np.ndarray, np.ndarray]] = None
-        # In words, what cannot be drawn.
+        self._static: Dict[str, _RenderedBody] = {}
+        self._moving: Dict[str, _RenderedBody] = {}
+        self._all_static: Optional[Tuple[np.ndarray, np.ndarray]] = None
+        # One text for each visual that cannot be rendered.
         self.warnings: List[str] = []
 
     def add(self, body: Body) -> None:
+        """Add a body."""
         parts = []
         for visual in visible_parts(body):
             try:
-                parts.append(_looks_of(visual))
+                parts.append(_appearance_of(visual))
             except WorldError as error:
-                self.warnings.append(f"not to be seen: {error}")
+                self.warnings.append(f"not rendered: {error}")
         triangles = np.concatenate([np.empty((0, 3, 3)), *(triangles for triangles, _, _ in parts)])
         colours = np.concatenate([np.empty((0, 3)), *(colours for _, colours, _ in parts)])
-        glows = np.concatenate([np.empty((0, 3)), *(glows for _, _, glows in parts)])
-        self._place(body.name, body.is_static, (triangles, colours, glows), body.pose_in_world)
+        emissive = np.concatenate([np.empty((0, 3)), *(emissive for _, _, emissive in parts)])
+        self._place(body.name, body.is_static, (triangles, colours, emissive), body.pose_in_world)
 
     def move(self, name: str, pose: np.ndarray) -> None:
-        """A body that otherwise keeps still has been put to another place."""
-        if name in self._still:
-            drawn = self._still[name]
-            self._place(name, True, drawn.looks, pose)
+        """Set the pose (4, 4) of a static body."""
+        if name in self._static:
+            drawn = self._static[name]
+            self._place(name, True, drawn.appearance, pose)
 
     def remove(self, name: str) -> None:
+        """Remove a body."""
         self._moving.pop(name, None)
-        if self._still.pop(name, None) is not None:
-            self._all_still = None
+        if self._static.pop(name, None) is not None:
+            self._all_static = None
 
-    def triangles(self, pose_of: Callable[[str], np.ndarray], but: str = "") -> Tuple[np.ndarray, np.ndarray]:
-        """Triangles (T, 3, 3) in the world and their shades (T, 3), uint8, but for those of a model."""
-        if self._all_still is None:
-            still = self._still.values()
-            self._all_still = (
-                np.concatenate([np.empty((0, 3, 3)), *(drawn.triangles for drawn in still)]),
-                np.concatenate([np.empty((0, 3), np.uint8), *(drawn.colours for drawn in still)]),
+    def triangles(
+        self, pose_of: Callable[[str], np.ndarray], excluded_model: str = ""
+    ) -> Tuple[np.ndarray, np.ndarray]:
+        """Return triangles (T, 3, 3) in the world and their shaded colours (T, 3), uint8.
+
+        Args:
+            pose_of: Returns the present pose (4, 4) of a body.
+            excluded_model: Model whose bodies are left out.
+        """
+        if self._all_static is None:
+            static = self._static.values()
+            self._all_static = (
+                np.concatenate([np.empty((0, 3, 3)), *(drawn.triangles for drawn in static)]),
+                np.concatenate([np.empty((0, 3), np.uint8), *(drawn.colours for drawn in static)]),
             )
         for name, drawn in list(self._moving.items()):
             pose = pose_of(name)
-            if not np.array_equal(pose, drawn.at):
-                self._place(name, False, drawn.looks, pose)
-        seen = [drawn for name, drawn in self._moving.items() if name.split("::", 1)[0] != but]
+            if not np.array_equal(pose, drawn.pose):
+                self._place(name, False, drawn.appearance, pose)
+        visible = [drawn for name, drawn in self._moving.items() if name.split("::", 1)[0] != excluded_model]
         return (
-            np.concatenate([self._all_still[0], *(drawn.triangles for drawn in seen)]),
-            np.concatenate([self._all_still[1], *(drawn.colours for drawn in seen)]),
+            np.concatenate([self._all_static[0], *(drawn.triangles for drawn in visible)]),
+            np.concatenate([self._all_static[1], *(drawn.colours for drawn in visible)]),
         )
 
-    def _place(self, name: str, still: bool, looks: _Looks, pose) -> None:
-        in_body, own_colours, glows = looks
+    def _place(self, name: str, is_static: bool, appearance: _Appearance, pose) -> None:
+        in_body, own_colours, emissive = appearance
         triangles = transform_points(pose, in_body.reshape(-1, 3)).reshape(-1, 3, 3)
-        drawn = _Drawn(looks, pose, triangles, shade(triangles, own_colours, glows))
-        if still:
-            self._still[name] = drawn
-            self._all_still = None
+        drawn = _RenderedBody(appearance, pose, triangles, shade(triangles, own_colours, emissive))
+        if is_static:
+            self._static[name] = drawn
+            self._all_static = None
         else:
             self._moving[name] = drawn
 
 
 def visible_parts(body: Body) -> Sequence[Visual]:
-    """What there is to see of a body: its solids if it has no visuals."""
+    """Return the visuals of a body, made from its collisions if it has none."""
     return body.visuals or [Visual(part.shape, part.pose_in_body) for part in body.collisions]
 
 
-def _looks_of(visual: Visual) -> _Looks:
+def _appearance_of(visual: Visual) -> _Appearance:
     mesh = mesh_of(visual.shape)
     triangles = transform_points(visual.pose_in_body, mesh.vertices)[mesh.triangles]
     count = len(triangles)
@@ -109,7 +118,7 @@ def _looks_of(visual: Visual) -> _Looks:
 
 
 def mesh_of(shape: VisualShape) -> Mesh:
-    """Any shape as triangles; of an endless plane a large square."""
+    """Return the triangles of a shape; a large square for an infinite plane."""
     if isinstance(shape, Mesh):
         return shape
     if isinstance(shape, MeshFile):
@@ -121,8 +130,8 @@ def mesh_of(shape: VisualShape) -> Mesh:
     if isinstance(shape, Cylinder):
         return _prism(_circle() * shape.radius, shape.length)
     if isinstance(shape, Sphere):
-        return _ball(shape.radius)
-    return _square(shape)
+        return _sphere(shape.radius)
+    return _plane(shape)
 
 
 def _circle() -> np.ndarray:
@@ -131,7 +140,7 @@ def _circle() -> np.ndarray:
 
 
 def _prism(outline_xy: np.ndarray, height: float) -> Mesh:
-    """Over a convex outline (N, 2) in order, half above z = 0 and half below."""
+    """Return a prism over a convex outline (N, 2), centred at z = 0."""
     count = len(outline_xy)
     vertices = np.vstack(
         [np.column_stack((outline_xy, np.full(count, z))) for z in (-height / 2.0, height / 2.0)]
@@ -142,7 +151,7 @@ def _prism(outline_xy: np.ndarray, height: float) -> Mesh:
     return Mesh(vertices, np.vstack((lid, lid + count, *sides)))
 
 
-def _ball(radius: float) -> Mesh:
+def _sphere(radius: float) -> Mesh:
     rings = CIRCLE_CORNERS // 2
     tilts = np.arange(rings + 1) * (math.pi / rings)
     vertices = np.concatenate(
@@ -158,12 +167,12 @@ def _ball(radius: float) -> Mesh:
     return Mesh(vertices * radius, np.vstack((upper, lower)))
 
 
-def _square(plane: Plane) -> Mesh:
+def _plane(plane: Plane) -> Mesh:
     normal = np.asarray(plane.normal) / np.linalg.norm(plane.normal)
     along = np.cross(normal, (1.0, 0.0, 0.0) if abs(normal[0]) < 0.9 else (0.0, 1.0, 0.0))
     along /= np.linalg.norm(along)
     across = np.cross(normal, along)
-    ticks = np.linspace(-PLANE_REACH, PLANE_REACH, PLANE_TILES + 1)
+    ticks = np.linspace(-PLANE_EXTENT, PLANE_EXTENT, PLANE_TILES + 1)
     vertices = (ticks[:, None, None] * along + ticks[None, :, None] * across).reshape(-1, 3)
     corner = (np.arange(PLANE_TILES)[:, None] * (PLANE_TILES + 1) + np.arange(PLANE_TILES)).ravel()
     right, up = corner + PLANE_TILES + 1, corner + 1

@@ -1,4 +1,4 @@
-"""What can be seen of the bodies of a scene, made when it is first looked at."""
+"""What sensors see of a scene, computed when it is first needed."""
 
 from dataclasses import replace
 from typing import Callable, Dict, List, Tuple, Union
@@ -11,54 +11,63 @@ from sim_bridge.world import Body
 
 
 class SceneView:
-    """Level sections for range finders and a drawing for cameras; ``pose_of`` says where a body is, (4, 4).
+    """Cross-sections for range finders and triangles for cameras.
 
-    A viewer is a model; it does not see itself.
+    A viewer is a model, which does not see itself.
+
+    Args:
+        pose_of: Returns the present pose (4, 4) of a body.
     """
 
     def __init__(self, pose_of: Callable[[str], np.ndarray]):
         self._pose_of = pose_of
         self._bodies: Dict[str, Body] = {}
         self._sections: Dict[Tuple[str, float], CrossSection] = {}
-        # Meshes may take seconds.
-        self._drawings: List[RenderGeometry] = []
+        # At most one; computed when a camera first needs it, since loading meshes may take seconds.
+        self._render_geometry: List[RenderGeometry] = []
 
     @property
     def warnings(self) -> Tuple[str, ...]:
-        """In words, what cameras cannot see, known when they have first looked."""
-        return tuple(warning for drawing in self._drawings for warning in drawing.warnings)
+        """One text for each visual that cannot be rendered, known after the first image."""
+        return tuple(warning for geometry in self._render_geometry for warning in geometry.warnings)
 
     def add(self, body: Body) -> None:
+        """Add a body."""
         self._bodies[body.name] = body
-        for drawing in self._drawings:
-            drawing.add(body)
+        for geometry in self._render_geometry:
+            geometry.add(body)
         for (viewer, _), section in self._sections.items():
             if body.model != viewer:
                 section.add(body)
 
     def remove(self, name: str) -> None:
+        """Remove a body."""
         self._bodies.pop(name, None)
         for view in self._views():
             view.remove(name)
 
     def move(self, name: str, pose: np.ndarray) -> None:
-        """A body has been put to another place, (4, 4)."""
+        """Set the pose (4, 4) of a body; those of moving bodies are read from the engine instead."""
         if name in self._bodies and self._bodies[name].is_static:
             self._bodies[name] = replace(self._bodies[name], pose_in_world=pose)
             for view in self._views():
                 view.move(name, pose)
 
     def update(self) -> None:
-        """Everything may be elsewhere; no trace is left of where it was."""
+        """Recompute the cross-sections of moving bodies, after a state of the engine was restored."""
         for section in self._sections.values():
             section.update(self._pose_of)
 
     def remove_viewer(self, viewer: str) -> None:
-        """A viewer is gone."""
+        """Remove a viewer."""
         self._sections = {key: section for key, section in self._sections.items() if key[0] != viewer}
 
     def section(self, viewer: str, height: float) -> Tuple[np.ndarray, np.ndarray]:
-        """Sides (N, 4) of what there is at a height, as x, y, x, y, and how brightly each reflects, (N,)."""
+        """Return the cross-section that a viewer sees at a height [m].
+
+        Returns:
+            Segments (N, 4) as x, y, x, y [m], and the laser_retro (N,) of each.
+        """
         section = self._sections.get((viewer, height))
         if section is None:
             section = self._sections[viewer, height] = CrossSection(height)
@@ -68,12 +77,12 @@ class SceneView:
         return section.segments(self._pose_of), section.retros()
 
     def triangles(self, viewer: str = "") -> Tuple[np.ndarray, np.ndarray]:
-        """What cameras see: triangles (T, 3, 3) and their shades (T, 3), uint8."""
-        if not self._drawings:
-            self._drawings.append(RenderGeometry())
+        """Return the triangles (T, 3, 3) that a camera sees, and their shaded colours (T, 3), uint8."""
+        if not self._render_geometry:
+            self._render_geometry.append(RenderGeometry())
             for body in self._bodies.values():
-                self._drawings[0].add(body)
-        return self._drawings[0].triangles(self._pose_of, but=viewer)
+                self._render_geometry[0].add(body)
+        return self._render_geometry[0].triangles(self._pose_of, excluded_model=viewer)
 
     def _views(self) -> List[Union[RenderGeometry, CrossSection]]:
-        return [*self._drawings, *self._sections.values()]
+        return [*self._render_geometry, *self._sections.values()]

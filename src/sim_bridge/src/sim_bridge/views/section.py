@@ -1,4 +1,4 @@
-"""The outlines of a world's bodies at one height, and beams cast at them."""
+"""Cross-sections of a world at one height, and ray casting in them."""
 
 from dataclasses import dataclass
 from typing import Callable, Dict, Optional, Sequence, Tuple
@@ -8,64 +8,70 @@ import numpy as np
 from sim_bridge.geometry.slicing import slice_shape
 from sim_bridge.world import Body
 
-# Metres or radians of movement below which an outline is not drawn anew: bodies at rest tremble, and meshes
-# take their time.
-STILL = 5e-4
+# Movement [m or rad] below which an outline is not recomputed: bodies at rest jitter, and slicing meshes
+# takes time.
+POSE_TOLERANCE = 5e-4
 
 
 @dataclass(frozen=True, eq=False)
 class _Outline:
-    """The sides (N, 4) of a body's cut, and how brightly they reflect (N,), drawn with it at ``drawn_at``."""
+    """Segments (N, 4) of a body's slice at a pose (4, 4), and their laser_retro (N,)."""
 
     body: Body
-    drawn_at: np.ndarray
+    computed_at: np.ndarray
     segments: np.ndarray
     retros: np.ndarray
 
 
 class CrossSection:
-    """A level cut through the bodies of a world that follows those that move."""
+    """The cross-section of a scene at one height, updated as bodies move."""
 
     def __init__(self, height: float):
         self._height = height
-        self._still: Dict[str, _Outline] = {}
+        self._static: Dict[str, _Outline] = {}
         self._moving: Dict[str, _Outline] = {}
-        # What is on a course, where it was at first: it is shifted and not turned, so it is cut but once.
-        self._shifted: Dict[str, _Outline] = {}
+        # Kinematic bodies: they are translated but not rotated, so that they are sliced only once.
+        self._kinematic: Dict[str, _Outline] = {}
         self._stacked: Optional[_Stacked] = None
 
     def add(self, body: Body) -> None:
+        """Add a body."""
         self._place(body, body.pose_in_world)
 
     def move(self, name: str, pose: np.ndarray) -> None:
-        """A body that otherwise keeps still has been put to another place."""
-        if name in self._still:
-            self._place(self._still[name].body, pose)
+        """Set the pose (4, 4) of a static body."""
+        if name in self._static:
+            self._place(self._static[name].body, pose)
 
     def remove(self, name: str) -> None:
-        for outlines in (self._still, self._moving, self._shifted):
+        """Remove a body."""
+        for outlines in (self._static, self._moving, self._kinematic):
             outlines.pop(name, None)
         self._stacked = None
 
     def update(self, pose_of: Callable[[str], np.ndarray]) -> None:
-        """Draws what moves where it now is, to the last bit."""
+        """Recompute the outlines of moving bodies at their exact present poses."""
         for name, outline in list(self._moving.items()):
             self._place(outline.body, pose_of(name))
 
     def segments(self, pose_of: Callable[[str], np.ndarray]) -> np.ndarray:
-        """Sides (N, 4) of all outlines as x, y, x, y; ``pose_of`` says where a body is now, (4, 4)."""
+        """Return the segments (N, 4) of all outlines as x, y, x, y [m].
+
+        Args:
+            pose_of: Returns the present pose (4, 4) of a body.
+        """
         stacked = self._stack()
-        if not self._moving and not self._shifted:
-            return stacked.still
+        if not self._moving and not self._kinematic:
+            return stacked.static
         for name, outline in self._moving.items():
             pose = pose_of(name)
-            if _differ(pose, outline.drawn_at):
+            if _differ(pose, outline.computed_at):
                 self._place(outline.body, pose)
         moving = [outline.segments for outline in self._moving.values()]
-        return np.concatenate([stacked.still, stacked.shifted(pose_of), *moving])
+        return np.concatenate([stacked.static, stacked.kinematic(pose_of), *moving])
 
     def retros(self) -> np.ndarray:
-        """How brightly each of the sides last told by ``segments`` reflects a laser, (N,)."""
+        """Return the laser_retro (N,) of the segments that ``segments`` returned last."""
         stacked = self._stack()
         if not self._moving:
             return stacked.retros
@@ -73,76 +79,85 @@ class CrossSection:
 
     def _stack(self) -> "_Stacked":
         if self._stacked is None:
-            self._stacked = _Stacked(list(self._still.values()), list(self._shifted.values()))
+            self._stacked = _Stacked(list(self._static.values()), list(self._kinematic.values()))
         return self._stacked
 
     def _place(self, body: Body, pose: np.ndarray) -> None:
-        outline = _Outline(body, pose, *self._cut(body, pose))
+        outline = _Outline(body, pose, *self._slice(body, pose))
         if body.mass is not None:
             self._moving[body.name] = outline
             return
-        (self._shifted if body.is_kinematic else self._still)[body.name] = outline
+        (self._kinematic if body.is_kinematic else self._static)[body.name] = outline
         self._stacked = None
 
-    def _cut(self, body: Body, pose: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
-        """Sides (N, 4) of a body's outlines, and how brightly each reflects, (N,)."""
-        cuts = [
+    def _slice(self, body: Body, pose: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+        """Return the segments (N, 4) of a body's outlines, and the laser_retro (N,) of each."""
+        outlines = [
             (outline, part.laser_retro)
             for part in body.collisions
             for outline in slice_shape(part.shape, pose @ part.pose_in_body, self._height, self._height)
         ]
-        sides = [np.hstack((outline, np.roll(outline, -1, axis=0))) for outline, _ in cuts]
-        retros = [np.full(len(outline), laser_retro) for outline, laser_retro in cuts]
+        sides = [np.hstack((outline, np.roll(outline, -1, axis=0))) for outline, _ in outlines]
+        retros = [np.full(len(outline), laser_retro) for outline, laser_retro in outlines]
         return np.vstack([np.empty((0, 4)), *sides]), np.concatenate([np.empty(0), *retros])
 
 
 class _Stacked:
-    """The sides (N, 4) of what keeps ``still``, and of what is shifted; ``retros`` (N + M,) of both."""
+    """Segments of all static and kinematic bodies in one array each; ``retros``: laser_retro of both."""
 
-    def __init__(self, still: Sequence[_Outline], shifted: Sequence[_Outline]):
-        self.still = np.vstack([np.empty((0, 4)), *(outline.segments for outline in still)])
-        self.retros = np.concatenate([np.empty(0), *(outline.retros for outline in (*still, *shifted))])
-        self._names = [outline.body.name for outline in shifted]
-        self._drawn = np.vstack([np.empty((0, 4)), *(outline.segments for outline in shifted)])
-        self._drawn_at = np.array([_ends(outline.drawn_at) for outline in shifted]).reshape(-1, 4)
-        counts = np.array([len(outline.segments) for outline in shifted], dtype=np.intp)
-        # Whose each side is.
-        self._whose = np.repeat(np.arange(len(shifted)), counts)
+    def __init__(self, static: Sequence[_Outline], kinematic: Sequence[_Outline]):
+        self.static = np.vstack([np.empty((0, 4)), *(outline.segments for outline in static)])
+        self.retros = np.concatenate([np.empty(0), *(outline.retros for outline in (*static, *kinematic))])
+        self._names = [outline.body.name for outline in kinematic]
+        self._segments = np.vstack([np.empty((0, 4)), *(outline.segments for outline in kinematic)])
+        self._computed_at = np.array([_ends(outline.computed_at) for outline in kinematic]).reshape(-1, 4)
+        counts = np.array([len(outline.segments) for outline in kinematic], dtype=np.intp)
+        # Index of the body of each segment.
+        self._body_indices = np.repeat(np.arange(len(kinematic)), counts)
 
-    def shifted(self, pose_of: Callable[[str], np.ndarray]) -> np.ndarray:
-        """Sides (M, 4) of what is shifted, where it is now."""
+    def kinematic(self, pose_of: Callable[[str], np.ndarray]) -> np.ndarray:
+        """Return the segments (M, 4) of kinematic bodies at their present positions."""
         if not self._names:
-            return self._drawn
-        ways = np.array([_ends(pose_of(name)) for name in self._names]) - self._drawn_at
-        return self._drawn + ways.take(self._whose, axis=0)
+            return self._segments
+        displacements = np.array([_ends(pose_of(name)) for name in self._names]) - self._computed_at
+        return self._segments + displacements.take(self._body_indices, axis=0)
 
 
 def _ends(pose: np.ndarray) -> Tuple[float, float, float, float]:
-    """The place of a pose (4, 4), for both ends of a side."""
+    """Return x, y, x, y of a pose (4, 4), for both ends of a segment."""
     x, y = pose.item(0, 3), pose.item(1, 3)
     return x, y, x, y
 
 
 def _differ(pose: np.ndarray, before: np.ndarray) -> bool:
-    """Whether a pose (4, 4) is another than before; first the place, as most that moves goes somewhere."""
-    place, place_before = pose[:2, 3].tolist(), before[:2, 3].tolist()
-    has_gone = any(abs(here - there) > STILL for here, there in zip(place, place_before))
-    return has_gone or bool(np.abs(pose - before).max() > STILL)
+    """Return whether two poses (4, 4) differ; compares positions first, as most moving bodies translate."""
+    position, position_before = pose[:2, 3].tolist(), before[:2, 3].tolist()
+    has_moved = any(abs(a - b) > POSE_TOLERANCE for a, b in zip(position, position_before))
+    return has_moved or bool(np.abs(pose - before).max() > POSE_TOLERANCE)
 
 
 def cast_beams(
-    segments: np.ndarray, x: float, y: float, first: float, increment: float, count: int, sight: float
+    segments: np.ndarray, x: float, y: float, first: float, increment: float, count: int, max_range: float
 ) -> Tuple[np.ndarray, np.ndarray]:
-    """Distance, metres, from (x, y) to the nearest segment along each of ``count`` beams, and which that is.
+    """Cast beams at segments.
 
-    ``segments``: (N, 4) as x, y, x, y. Beam i points along ``first + i * increment``, radians, increment
-    positive. Returns (count,) infinite and (count,) -1 where nothing lies within ``sight`` metres.
+    Args:
+        segments: Segments (N, 4) as x, y, x, y [m].
+        x: Position of the sensor [m], as is ``y``.
+        first: Direction of the first beam [rad].
+        increment: Angle between two beams [rad], positive.
+        count: Number of beams.
+        max_range: Largest range [m].
+
+    Returns:
+        The distance (count,) to the nearest segment along each beam, infinite if there is none within
+        ``max_range``, and the index (count,) of that segment, else -1.
     """
     from sim_bridge.views.kernels import cast_rays  # late: it brings numba
 
-    return cast_rays(np.ascontiguousarray(segments), x, y, first, increment, count, sight)
+    return cast_rays(np.ascontiguousarray(segments), x, y, first, increment, count, max_range)
 
 
 def warm_up() -> None:
-    """Compiles, or loads from the cache, what the first scan would wait for."""
+    """Compile the ray casting kernel, or load it from the cache, before the first scan needs it."""
     cast_beams(np.empty((0, 4)), 0.0, 0.0, 0.0, 1.0, 1, 1.0)

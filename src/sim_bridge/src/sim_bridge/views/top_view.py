@@ -1,4 +1,4 @@
-"""Pictures of worlds for people."""
+"""Images of a world from above."""
 
 from typing import Callable, Tuple
 
@@ -11,44 +11,53 @@ from sim_bridge.views.render_geometry import RenderGeometry, visible_parts
 from sim_bridge.views.true_map import outlines_of
 from sim_bridge.world import World
 
-# Pixels of the longer side, and metres around what there is.
+# Length of the longer side [pixels], and margin around the bodies [m].
 SIZE, MARGIN = 1200, 0.5
-CUT = 70
+CUT_GREY = 70
 
 
 def render_top_view(
     world: World, below: float = 2.0, size: int = SIZE, warn: Callable[[str], None] = lambda text: None
 ) -> np.ndarray:
-    """The world seen from above without perspective, y upwards, without what is higher than ``below``.
+    """Render a world from above, in orthographic projection with y upwards.
 
-    Solids that reach higher show where they are cut, in dark grey. ``warn`` is told what cannot be drawn.
-    Returns (H, W, 3), uint8. Raises WorldError if there is nothing but endless planes.
+    Args:
+        world: The world.
+        below: Height above which everything is cut off [m]; cut surfaces are dark grey.
+        size: Length of the longer side [pixels].
+        warn: Called with a text for each visual that cannot be rendered.
+
+    Returns:
+        The image (H, W, 3), uint8.
+
+    Raises:
+        WorldError: The world holds only infinite planes.
     """
     low, high = _extent(world)
     scale = (size - 1) / float((high - low).max())
     width, height = (int(round(float(length) * scale)) + 1 for length in high - low)
-    triangles, shades = _drawn(world, planes=True, warn=warn)
+    triangles, shades = _triangles(world, planes=True, warn=warn)
     caps = _caps(world, below)
     triangles = np.concatenate((triangles, caps))
-    shades = np.concatenate((shades, np.full((len(caps), 3), CUT, dtype=np.uint8)))
+    shades = np.concatenate((shades, np.full((len(caps), 3), CUT_GREY, dtype=np.uint8)))
     projection = Projection(
         width, height, scale, (-low[0] * scale, high[1] * scale), near=-1e-6, far=np.inf, perspective=False
     )
-    picture, _ = rasterize(triangles * (1.0, -1.0, -1.0) + (0.0, 0.0, below), shades, projection)
-    return picture
+    image, _ = rasterize(triangles * (1.0, -1.0, -1.0) + (0.0, 0.0, below), shades, projection)
+    return image
 
 
 def _extent(world: World) -> Tuple[np.ndarray, np.ndarray]:
-    """The lower left and upper right corner (2,) of all that is no endless plane."""
-    triangles, _ = _drawn(world, planes=False)
+    """Return the lower left and upper right corners (2,) of all bodies except infinite planes."""
+    triangles, _ = _triangles(world, planes=False)
     if not len(triangles):
-        raise WorldError(f"world '{world.name}': there is nothing to be seen")
+        raise WorldError(f"world '{world.name}': it has nothing to render")
     points_xy = triangles[..., :2].reshape(-1, 2)
     return points_xy.min(axis=0) - MARGIN, points_xy.max(axis=0) + MARGIN
 
 
 def _caps(world: World, height: float) -> np.ndarray:
-    """Triangles (T, 3, 3) that close the solids cut at a height."""
+    """Return triangles (T, 3, 3) that close the solids cut at a height [m]."""
     fans = [
         np.stack((np.repeat(outline[:1], len(outline) - 2, axis=0), outline[1:-1], outline[2:]), axis=1)
         for outline in outlines_of(world, height, height)
@@ -58,14 +67,14 @@ def _caps(world: World, height: float) -> np.ndarray:
     return np.concatenate((flat, np.full((*flat.shape[:2], 1), height)), axis=2)
 
 
-def _drawn(
+def _triangles(
     world: World, planes: bool, warn: Callable[[str], None] = lambda text: None
 ) -> Tuple[np.ndarray, np.ndarray]:
     poses = {body.name: body.pose_in_world for body in world.bodies}
-    drawing = RenderGeometry()
+    geometry = RenderGeometry()
     for body in world.bodies:
         if planes or not any(isinstance(part.shape, Plane) for part in visible_parts(body)):
-            drawing.add(body)
-    for warning in drawing.warnings:
+            geometry.add(body)
+    for warning in geometry.warnings:
         warn(warning)
-    return drawing.triangles(poses.__getitem__)
+    return geometry.triangles(poses.__getitem__)

@@ -1,7 +1,7 @@
-"""The exact occupancy grid of a world cut at a height: the map a perfect mapper would make."""
+"""Ground-truth occupancy grid of a world at one height."""
 
 import math
-from typing import List, Tuple
+from typing import List, Sequence, Tuple
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from sim_bridge.errors import WorldError
 from sim_bridge.geometry.slicing import slice_shape
 from sim_bridge.world import World
 
-# A solid that reaches less far than this, in cells, into a cell only touches it (1.5708 is not quite pi/2).
+# A solid that reaches into a cell by less than this does not occupy it [cells]: 1.5708 is not quite pi/2.
 TOUCH = 0.02
 
 
@@ -22,25 +22,27 @@ def true_map(
     thickness: float = 0.01,
     margin: float = 0.5,
 ) -> OccupancyGrid:
-    """The grid of what is solid within ``thickness`` metres about ``height``.
+    """Return the ground-truth map of a world.
 
-    Cells that a solid overlaps are occupied, those that can be reached from the point ``inside`` without
-    crossing one are free, all others unknown. The grid reaches ``margin`` metres beyond the outermost solid;
-    its origin is a multiple of the resolution. Raises WorldError if there is nothing at that height or
-    ``inside`` lies in a solid.
+    Cells that a solid overlaps are occupied, those that are connected to ``inside`` are free, all others are
+    unknown. The grid's origin is a multiple of the resolution.
+
+    Args:
+        world: The world; its dynamic obstacles are left out.
+        height: Height of the slice [m].
+        resolution: Size of a cell [m].
+        inside: A point in free space [m].
+        thickness: Thickness of the slice [m].
+        margin: Distance by which the grid extends beyond the outermost solid [m].
+
+    Raises:
+        WorldError: Nothing is solid at that height, or ``inside`` is in a solid.
     """
     bottom, top = height - thickness / 2.0, height + thickness / 2.0
     outlines = outlines_of(world, bottom, top)
     if not outlines:
         raise WorldError(f"world '{world.name}': nothing is solid at a height of {height:g} m")
-    corners = np.vstack([*outlines, [inside]])
-    first = np.floor((corners.min(axis=0) - margin) / resolution).astype(int)
-    last = np.ceil((corners.max(axis=0) + margin) / resolution).astype(int)
-    cols, rows = last - first
-    origin = Pose2(*(first * resolution).tolist())
-    solid = np.zeros((rows, cols), dtype=bool)
-    for outline in outlines:
-        _fill(solid, outline / resolution - first)
+    solid, origin = _occupied_cells(outlines, inside, resolution, margin)
     cells = np.full(solid.shape, UNKNOWN, dtype=np.int8)
     grid = OccupancyGrid(cells, resolution, origin)
     ((row, col),) = grid.cells_of([inside])
@@ -54,8 +56,23 @@ def true_map(
     return grid
 
 
+def _occupied_cells(
+    outlines: Sequence[np.ndarray], inside: Tuple[float, float], resolution: float, margin: float
+) -> Tuple[np.ndarray, Pose2]:
+    """Return which cells (rows, cols) convex outlines overlap, and the origin of the grid."""
+    corners = np.vstack([*outlines, [inside]])
+    first = np.floor((corners.min(axis=0) - margin) / resolution).astype(int)
+    last = np.ceil((corners.max(axis=0) + margin) / resolution).astype(int)
+    cols, rows = last - first
+    origin = Pose2(*(first * resolution).tolist())
+    solid = np.zeros((rows, cols), dtype=bool)
+    for outline in outlines:
+        _fill(solid, outline / resolution - first)
+    return solid, origin
+
+
 def outlines_of(world: World, bottom: float, top: float) -> List[np.ndarray]:
-    """The convex outlines (N, 2) of all that is solid and stays, between two heights, metres."""
+    """Return the convex outlines (N, 2) of all solids that do not move, between two heights [m]."""
     return [
         outline
         for body in world.bodies
@@ -66,10 +83,10 @@ def outlines_of(world: World, bottom: float, top: float) -> List[np.ndarray]:
 
 
 def _fill(solid: np.ndarray, outline: np.ndarray) -> None:
-    """Sets the cells that a convex outline (N, 2), in cells from the grid's corner, overlaps.
+    """Set the cells that a convex outline (N, 2), in cells from the grid's corner, overlaps.
 
-    A cell is missed if some direction separates it from the outline: its own axes or an edge's normal
-    (separating axis theorem).
+    By the separating axis theorem: a cell is not overlapped if an axis of the grid or the normal of an edge
+    separates it from the outline.
     """
     low = np.maximum(np.floor(outline.min(axis=0)).astype(int) - 1, 0)
     high = np.ceil(outline.max(axis=0)).astype(int) + 1

@@ -12,7 +12,7 @@ from std_srvs.srv import Empty, EmptyResponse
 from planar import PlanarError
 from planar.config.parameters import DynamicParameter
 from planar_ros.node.reconfigure import ReconfigureServer
-from sim_bridge.config import HIGHEST_PHYSICS_RATE
+from sim_bridge.config import MAX_PHYSICS_RATE
 from sim_bridge.errors import WorldError
 from sim_bridge.ros.gazebo.server import NAMESPACE, GazeboServer
 from sim_bridge.ros.timing.time_control import TimeControl
@@ -93,8 +93,8 @@ class PhysicsServices:
         """Set rates and gravity; max_update_rate 0 is as fast as possible. Raises PlanarError."""
         if gravity.x or gravity.y or not np.isfinite(gravity.z):
             raise WorldError("gravity must point along the z axis")
-        if not (time_step * HIGHEST_PHYSICS_RATE >= 1.0 and 0.0 <= max_update_rate < np.inf):
-            least = 1.0 / HIGHEST_PHYSICS_RATE
+        if not (time_step * MAX_PHYSICS_RATE >= 1.0 and 0.0 <= max_update_rate < np.inf):
+            least = 1.0 / MAX_PHYSICS_RATE
             raise WorldError(f"time_step must be at least {least:g}, max_update_rate not negative")
         self._scene.set_physics_rate(round(1.0 / time_step))
         self._scene.set_gravity(-gravity.z)

@@ -1,1 +1,1 @@
-"""<geometry> and <material> elements as shapes and their colours."""
+"""Reads <geometry> and <material> elements."""

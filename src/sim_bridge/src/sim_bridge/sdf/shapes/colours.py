@@ -1,4 +1,4 @@
-"""The colours of <material>."""
+"""Reads the colours of <material> elements."""
 
 from typing import Optional
 
@@ -6,7 +6,7 @@ from sim_bridge.sdf.element import Element
 from sim_bridge.world import DARK, Colour
 
 DEFAULT: Colour = (0.7, 0.7, 0.7)
-# Gazebo's materials by name: their diffuse colour, or what their texture looks like from afar.
+# Gazebo's materials by name: diffuse colour, or mean colour of the texture.
 NAMED = {
     "Grey": (0.7, 0.7, 0.7),
     "DarkGrey": (0.175, 0.175, 0.175),
@@ -43,7 +43,7 @@ NAMED = {
 
 
 def read_colour(visual: Element) -> Optional[Colour]:
-    """The colour that a <visual> asks for: its diffuse one, else its script's; None if it asks for none."""
+    """Return the diffuse, ambient or scripted colour of a <visual>, None if it has none."""
     for tag in ("diffuse", "ambient"):
         element = visual.child("material", tag)
         if element is not None:
@@ -52,8 +52,8 @@ def read_colour(visual: Element) -> Optional[Colour]:
     return NAMED.get(name.text.rsplit("/", 1)[-1], DEFAULT) if name is not None else None
 
 
-def read_glow(visual: Element) -> Colour:
-    """The colour in which a <visual> shines by itself."""
+def read_emissive(visual: Element) -> Colour:
+    """Return the emissive colour of a <visual>."""
     element = visual.child("material", "emissive")
     return DARK if element is None else _colour(element)
 

@@ -1,4 +1,4 @@
-"""Where the meshes of Gazebo's own models stand on the floor, for where those models are not installed."""
+"""Footprints of the meshes of Gazebo's models, used where these models are not installed."""
 
 from typing import Dict, Optional, Tuple
 
@@ -7,8 +7,8 @@ import numpy as np
 from sim_bridge.geometry.shapes import Mesh
 from sim_bridge.sdf.shapes.prism import prism
 
-# Measured on the meshes of github.com/osrf/gazebo_models, at the height of a small robot; of people, whose
-# meshes were not at hand, the plate below their feet. By the mesh's address after model://, in its own unit:
+# Measured on the meshes of github.com/osrf/gazebo_models at the height of a small robot; for people, whose
+# meshes were not available, the plate below their feet. By the mesh's path after model://, in its own unit:
 # bottom, top and the parts, each a circle (x, y, radius) or a rectangle (x_min, y_min, x_max, y_max).
 Footprint = Tuple[float, float, Tuple[Tuple[float, ...], ...]]
 _JERSEY_BARRIER: Footprint = (0.0, 1.05, ((-0.3, -0.87, 0.3, 0.87),))
@@ -51,7 +51,7 @@ _ANGLES = np.radians(np.arange(0.0, 360.0, 30.0))
 
 
 def footprint_of(uri: str, scale: Tuple[float, float, float]) -> Optional[Mesh]:
-    """Prisms over the footprint of a mesh, scaled as it; None if it is not known."""
+    """Return prisms over the footprint of a mesh, with its scale; None if the mesh is not known."""
     name = uri.partition("://")[2].lstrip("/")
     if name not in FOOTPRINTS:
         return None
@@ -64,7 +64,7 @@ def footprint_of(uri: str, scale: Tuple[float, float, float]) -> Optional[Mesh]:
 
 
 def _outline(part: Tuple[float, ...]) -> np.ndarray:
-    """The corners (N, 2) of a circle or rectangle."""
+    """Return the corners (N, 2) of a circle or rectangle."""
     if len(part) == 3:
         x, y, radius = part
         return np.column_stack([x + radius * np.cos(_ANGLES), y + radius * np.sin(_ANGLES)])

@@ -1,4 +1,4 @@
-"""<geometry> elements as shapes."""
+"""Reads <geometry> elements."""
 
 from pathlib import Path
 from typing import Callable, Dict, List, Optional, Sequence
@@ -11,26 +11,28 @@ from sim_bridge.sdf.includes import resolve
 from sim_bridge.sdf.shapes.footprints import footprint_of
 from sim_bridge.sdf.shapes.prism import prism
 
-# SDF's own default, metres.
+# SDF's default [m].
 POLYLINE_HEIGHT = 1.0
 
 
 class UnsupportedGeometryError(Exception):
-    """A geometry that the rest of the world can do without; the text says why."""
+    """A geometry that is not supported or missing, and can be ignored; the text is the reason."""
 
 
 class MissingMeshError(UnsupportedGeometryError):
-    """A mesh whose file is not there; ``instead``: what is known of it all the same."""
+    """The file of a mesh is missing; ``fallback``: its footprint, if that is known."""
 
-    def __init__(self, text: str, instead: Optional[Mesh] = None):
+    def __init__(self, text: str, fallback: Optional[Mesh] = None):
         super().__init__(text)
-        self.instead = instead
+        self.fallback = fallback
 
 
 def read_shape(geometry: Element, folder: Path, model_folders: Sequence[Path]) -> Optional[VisualShape]:
-    """The shape of a <geometry>, None if it is empty; a mesh is only found, not read.
+    """Return the shape of a <geometry>, None if it is empty; a mesh is found but not loaded.
 
-    Raises WorldError, or LeftOutError for what is missing or not supported.
+    Raises:
+        UnsupportedGeometryError: The geometry is missing or not supported.
+        WorldError: A value is not valid.
     """
     if geometry.child("empty") is not None:
         return None
@@ -61,7 +63,7 @@ def _read_sphere(sphere: Element) -> Sphere:
 
 
 def _read_plane(plane: Element) -> Plane:
-    """A plane without end: what Gazebo limits is only its looks."""
+    """Read an infinite plane; in Gazebo its size affects only how it is drawn."""
     normal = plane.child("normal")
     if normal is None:
         return Plane()
@@ -89,7 +91,7 @@ def _find_mesh(mesh: Element, folder: Path, model_folders: Sequence[Path]) -> Me
 
 
 def _extrude(polylines: Sequence[Element]) -> Mesh:
-    """A prism from z = 0 upwards over the first outline, with the others as holes; closed at both ends."""
+    """Return a closed prism from z = 0 upwards over the first outline, with the others as holes."""
     rings: List[np.ndarray] = []
     for polyline in polylines:
         points_xy = np.array([point.numbers(2) for point in polyline.children("point")]).reshape(-1, 2)

@@ -1,4 +1,4 @@
-"""Outlines raised to solids."""
+"""Prisms over outlines."""
 
 from typing import Sequence
 
@@ -9,7 +9,7 @@ from sim_bridge.geometry.shapes import Mesh
 
 
 def prism(rings: Sequence[np.ndarray], bottom: float, top: float) -> Mesh:
-    """A prism over the first of ``rings``, (N, 2) each, with the others as holes; closed at both ends."""
+    """Return a closed prism over the first of ``rings``, (N, 2) each, with the others as holes."""
     points_xy, ends = np.vstack(rings), np.cumsum([len(ring) for ring in rings])
     lid = mapbox_earcut.triangulate_float64(points_xy, ends.astype(np.uint32)).reshape(-1, 3).astype(np.int64)
     count = len(points_xy)
