@@ -112,7 +112,7 @@ def test_a_degenerate_closure_does_not_confirm_one_that_is_not():
 
 
 def moved_on(closure, keyframes):
-    """A consistent closure so many keyframes further on, both ways."""
+    """A consistent closure so many keyframes later, at both ends."""
     edge = closure.edge
     edge = dataclasses.replace(edge, first=edge.first + keyframes, second=edge.second + keyframes)
     return dataclasses.replace(closure, edge=edge)

@@ -41,7 +41,7 @@ def seen_from(pose, world, rng):
 
 
 class Yard:
-    """Keys there and back: their true poses, what they saw, and the steps and poses that were measured."""
+    """Keyframes there and back: their true poses and points, and the measured steps and poses."""
 
     def __init__(self, seed, there_again=True):
         rng = np.random.default_rng(seed)
@@ -76,7 +76,7 @@ def test_loops_are_closed_on_the_return_despite_wheel_slips(seed):
 
 
 def with_loop(yard, first, second):
-    """The yard's edges, with a closure between two keys."""
+    """The yard's edges, with a loop closure between two keyframes."""
     true = yard.true[first].inverse() @ yard.true[second]
     loop = edges_of(Edge(first, second, true, FIRM, is_loop=True))
     return Edges(*(np.concatenate(pair) for pair in zip(vars(yard.edges).values(), vars(loop).values())))
@@ -107,7 +107,7 @@ def optimized(yard, settings=MapperSettings()):
 
 
 def return_errors(poses):
-    """Position errors (N, 2) of the return relative to the way there [m]."""
+    """Position errors (N, 2) of the return relative to the outward path [m]."""
     poses = [Pose2.from_array(pose) for pose in poses]
     there_and_back = [
         (poses[keyframe], poses[2 * KEYFRAMES - 1 - keyframe]) for keyframe in range(10, KEYFRAMES, 10)

@@ -91,14 +91,14 @@ def recognized_in_identical_streets(seed):
     world = walls(houses(rng))
     empty = PointCloud(np.zeros((0, 2), dtype=np.float32), np.zeros((0, 2), dtype=np.float32))
     street, copy = ([seen_from(pose, world, rng) for pose in STREET] for _ in range(2))
-    way = [Pose2(STREET[-1].x - share * 40.0, -share * 40.0, 0.0) for share in np.linspace(0.0, 1.0, 100)]
-    true = [*STREET, *way[1:-1], *(way[-1] @ pose for pose in STREET)]
+    path = [Pose2(STREET[-1].x - share * 40.0, -share * 40.0, 0.0) for share in np.linspace(0.0, 1.0, 100)]
+    true = [*STREET, *path[1:-1], *(path[-1] @ pose for pose in STREET)]
     steps = steps_along(true, rng)
     for i in range(KEYFRAMES - 1, len(true) - KEYFRAMES):
         steps[i] = Edge(i, i + 1, steps[i].second_in_first, SLIPPERY)
     ends = Edge(KEYFRAMES - 1, len(true) - 1, true[KEYFRAMES - 1].inverse() @ true[-1], SEEN, is_loop=True)
     edges = edges_of(*steps, ends)
-    clouds = [*street, *(len(way) - 2) * [empty], *copy]
+    clouds = [*street, *(len(path) - 2) * [empty], *copy]
     poses = np.array([pose.as_array() for pose in true])
     return recognize_sequences(poses, edges, clouds, tracked_trajectory(np.zeros(3), edges))
 

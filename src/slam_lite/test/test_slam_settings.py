@@ -64,11 +64,13 @@ def test_an_invalid_value_is_refused_by_its_official_name(values, complaint):
 
 def test_old_names_of_parameters_are_accepted_with_a_warning():
     old = {"key_distance": 0.3, "key_angle": 0.4, "window_keys": 7}
-    with pytest.warns(
-        FutureWarning, match="/slam_gmapping/key_distance is deprecated; use keyframe_distance"
-    ):
-        settings, unknown = settings_from(
-            NodeSettings, old, official_names(NodeSettings), where="/slam_gmapping/"
-        )
+    names = official_names(NodeSettings)
+    with pytest.warns(FutureWarning) as warned:
+        settings, unknown = settings_from(NodeSettings, old, names, where="/slam_gmapping/")
+    assert [str(warning.message) for warning in warned] == [
+        "/slam_gmapping/key_distance is deprecated; use keyframe_distance",
+        "/slam_gmapping/key_angle is deprecated; use keyframe_angle",
+        "/slam_gmapping/window_keys is deprecated; use window_keyframes",
+    ]
     assert unknown == []
     assert (settings.keyframe_distance, settings.keyframe_angle, settings.window_keyframes) == (0.3, 0.4, 7)

@@ -136,10 +136,10 @@ class NodeSettings(MapperSettings):
     map_update_interval: float = parameter(
         5.0, "time from one published map to the next, by the stamps of scans", "s", Interval(0.0)
     )
-    xmin: float = parameter(-100.0, "least extent of the published map", "m")
-    ymin: float = parameter(-100.0, "least extent of the published map", "m")
-    xmax: float = parameter(100.0, "least extent of the published map", "m")
-    ymax: float = parameter(100.0, "least extent of the published map", "m")
+    xmin: float = parameter(-100.0, "smallest x that the published map contains at least", "m")
+    ymin: float = parameter(-100.0, "smallest y that the published map contains at least", "m")
+    xmax: float = parameter(100.0, "largest x that the published map contains at least", "m")
+    ymax: float = parameter(100.0, "largest y that the published map contains at least", "m")
     state: str = parameter("", "state file to resume from; empty: a new map")
     localization_only: bool = parameter(False, "whether to localize in the loaded map and leave it unchanged")
     resume: bool = parameter(

@@ -1,7 +1,7 @@
 """Place recognition: places that look alike, wherever the graph has them.
 
 A place descriptor holds profiles of the walls along the place's two main directions: how much wall faces each
-of the four ways at each distance. Two places are compared by shifting their profiles along each other, for
+of the four directions at each distance. Two places are compared by shifting their profiles along each other, for
 each quarter turn, which gives their similarity and their relative pose (A. Censi et al., "Scan matching in
 the Hough domain", ICRA 2005; T. Roefer, "Using histogram correlation to create consistent laser scan maps",
 IROS 2002). Profiles need no guess, and as Fourier transforms they are compared so fast that a place is
@@ -271,7 +271,7 @@ def compose_poses(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 
 
 def _profile(points: np.ndarray, normals: np.ndarray, along: int, sign: float) -> np.ndarray:
-    """Square root (_BINS,) of how much wall faces one way at each distance along that axis."""
+    """Square root (_BINS,) of how much wall faces one direction at each distance along that axis."""
     facing = (sign * normals[:, along] > _FACING_COSINE) & (np.abs(points) < _REACH).all(axis=1)
     bins = np.rint(points[facing, along] / _BIN).astype(np.int64) % _BINS
     counts = np.bincount(bins, minlength=_BINS).astype(np.float64)
