@@ -15,7 +15,7 @@ from slam_lite.loops.relocalization import Relocalizer, spread_places
 from slam_lite.map_localizer import MapLocalizer
 from slam_lite.mapper import Mapper
 from slam_lite.matching.local_map import LocalMap
-from slam_lite.odometry_checks import DiscontinuityDetector
+from slam_lite.odometry.checks import DiscontinuityDetector
 from slam_lite.point_cloud import point_cloud_of
 from slam_lite.rendering import Evidence, ScanBeams, SessionRenderer
 

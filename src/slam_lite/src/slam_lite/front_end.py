@@ -13,8 +13,8 @@ from slam_lite.matching.correlative import SearchWindow, search_branch_and_bound
 from slam_lite.matching.local_map import LocalMap, Match, long_range_map
 from slam_lite.matching.refinement import refine
 from slam_lite.matching.scan_matcher import Prediction, scan_matcher_of
-from slam_lite.odometry_checks import has_moved
-from slam_lite.odometry_error_model import OdometryErrorModel
+from slam_lite.odometry.checks import has_moved
+from slam_lite.odometry.error_model import OdometryErrorModel
 from slam_lite.point_cloud import PointCloud
 
 # A match with a lower response is searched again in a wide window, as after a wheel slip.

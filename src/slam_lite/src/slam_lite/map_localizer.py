@@ -10,7 +10,7 @@ from slam_lite.loops.relocalization import Relocalizer
 from slam_lite.mapper import PoseUpdate, ranges_of
 from slam_lite.matching.local_map import LocalMap
 from slam_lite.no_return import NoReturnDetector
-from slam_lite.odometry_checks import MotionFilter
+from slam_lite.odometry.checks import MotionFilter
 from slam_lite.point_cloud import point_cloud_of
 from slam_lite.state import MapState
 

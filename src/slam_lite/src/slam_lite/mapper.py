@@ -15,7 +15,7 @@ from slam_lite.config import MapperSettings
 from slam_lite.front_end import FrontEnd, RecentKeyframes, TrackedPose
 from slam_lite.keyframes import is_keyframe, prune_keyframes
 from slam_lite.no_return import NoReturnDetector
-from slam_lite.odometry_checks import DiscontinuityDetector, MotionFilter
+from slam_lite.odometry.checks import DiscontinuityDetector, MotionFilter
 from slam_lite.point_cloud import PointCloud, point_cloud_of
 from slam_lite.rendering import Evidence, ScanBeams, beams_of, render_in_bands
 from slam_lite.state import MapState

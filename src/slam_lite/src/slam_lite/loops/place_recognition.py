@@ -1,10 +1,10 @@
 """Place recognition: places that look alike, wherever the graph has them.
 
 A place descriptor holds profiles of the walls along the place's two main directions: how much wall faces each
-of the four directions at each distance. Two places are compared by shifting their profiles along each other, for
-each quarter turn, which gives their similarity and their relative pose (A. Censi et al., "Scan matching in
-the Hough domain", ICRA 2005; T. Roefer, "Using histogram correlation to create consistent laser scan maps",
-IROS 2002). Profiles need no guess, and as Fourier transforms they are compared so fast that a place is
+of the four directions at each distance. Two places are compared by shifting their profiles along each other,
+for each quarter turn, which gives their similarity and their relative pose (A. Censi et al., "Scan matching
+in the Hough domain", ICRA 2005; T. Roefer, "Using histogram correlation to create consistent laser scan
+maps", IROS 2002). Profiles need no guess, and as Fourier transforms they are compared so fast that a place is
 compared with all others. Places that look alike are hypotheses only, at which a loop closure is searched.
 """
 

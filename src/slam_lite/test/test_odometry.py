@@ -5,7 +5,7 @@ import pytest
 
 from planar import Pose2
 from slam_lite.config import MapperSettings
-from slam_lite.odometry_error_model import OdometryErrorModel
+from slam_lite.odometry.error_model import OdometryErrorModel
 
 PER_DISTANCE, PER_TURN, SCALE = 0.006, 0.04, 0.03
 

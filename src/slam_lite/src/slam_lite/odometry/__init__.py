@@ -1,0 +1,1 @@
+"""Odometry: checks of its continuity, and its error model."""
