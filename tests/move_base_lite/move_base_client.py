@@ -1,4 +1,4 @@
-"""What tests of move_base share: a client of its action, and what is heard on topics."""
+"""Shared by tests of move_base: a client of its action, and a recorder of topics."""
 
 import math
 import time
@@ -16,10 +16,10 @@ from waiting import wait_until
 
 from planar_ros.calls.actions import goal_is_over, server_is_ready
 
-# Wall seconds: of a node that starts; of a message on its way, on a busy machine; of anything at all.
-START_SECONDS, HEARING_SECONDS, STANDSTILL_SECONDS = 60.0, 10.0, 120.0
+# Time-outs in wall seconds: start of a node; delivery of a message on a busy machine; any condition.
+START_SECONDS, DELIVERY_SECONDS, MAX_WAIT_SECONDS = 60.0, 10.0, 120.0
 LEVEL = (0.0, 0.0, 0.0, 1.0)
-# In the home, metres.
+# Positions in the home [m].
 IN_ONE_ROOM, IN_THE_NEXT_ROOM = (1.0, 0.0), (2.0, 3.0)
 
 
@@ -32,14 +32,14 @@ def pose_at(x, y, frame="map", quaternion=LEVEL):
 
 
 def points_of(cloud):
-    """The fields of a PointCloud2 of float32, by name, in order: arrays (N,)."""
+    """The fields of a float32 PointCloud2 by name, in order: arrays (N,)."""
     points = np.frombuffer(cloud.data, "<f4").reshape(cloud.width, -1)
     assert points.shape[1] == len(cloud.fields)
     return {field.name: points[:, field.offset // 4] for field in cloud.fields}
 
 
 class MessageRecorder:
-    """The messages of a topic with the times they came at."""
+    """Records the messages of a topic with their times of arrival."""
 
     def __init__(self, topic, kind):
         self.messages, self.times = [], []
@@ -50,7 +50,7 @@ class MessageRecorder:
         self.messages.append(message)
 
     def connected(self):
-        """Itself, once all publishers send to it: what one of them publishes only once is not missed."""
+        """Return itself once all publishers send to it, so that a message published once is not missed."""
         wait_until("the publishers", lambda: is_connected_to_all(self._subscriber))
         return self
 
@@ -61,7 +61,7 @@ class MessageRecorder:
         return [message for at, message in zip(self.times, self.messages) if at >= time]
 
     def wait(self):
-        """The newest message, once there is one."""
+        """Wait for a message and return the latest."""
         wait_until("a message", lambda: self.messages)
         return self.messages[-1]
 
@@ -85,7 +85,7 @@ class MoveBaseTestCase(unittest.TestCase):
         self.come_to_rest()
 
     def come_to_rest(self):
-        """Ends what is under way, and nothing else: a cancellation may overtake the next test's goal."""
+        """Cancel only an active goal: a later cancellation could overtake the goal of the next test."""
         at = rospy.get_time()
         self.wait_until(lambda: self.statuses.since(at))
         if self.has_active_goal():
@@ -95,16 +95,16 @@ class MoveBaseTestCase(unittest.TestCase):
         self.wait_until(lambda: abs(self.odometry.messages[-1].twist.twist.linear.x) < 0.01)
 
     def wait_until(self, is_so, seconds=30.0):
-        """Fails after so many simulated seconds; what happened in them may take a while to be heard of."""
+        """Fail after so many simulated seconds, plus wall time for the delivery of messages."""
         until, start = rospy.get_time() + seconds, time.monotonic()
         while not is_so():
             wall = time.monotonic() - start
-            is_late = wall > HEARING_SECONDS and rospy.get_time() > until
-            self.assertFalse(is_late or wall > STANDSTILL_SECONDS, "waited in vain")
+            is_late = wall > DELIVERY_SECONDS and rospy.get_time() > until
+            self.assertFalse(is_late or wall > MAX_WAIT_SECONDS, "time-out")
             time.sleep(0.01)
 
     def result_of(self, client=None, seconds=60.0):
-        """State and text of the goal that was sent last."""
+        """State and text of the latest goal."""
         client = client or self.client
         self.wait_until(lambda: goal_is_over(client), seconds)
         return client.get_state(), client.get_goal_status_text()
@@ -114,17 +114,17 @@ class MoveBaseTestCase(unittest.TestCase):
         return self.result_of()
 
     def robot_xy(self):
-        """Where the robot is by its odometry, metres."""
+        """Position of the robot by odometry [m]."""
         position = self.odometry.wait().pose.pose.position
         return position.x, position.y
 
     def far_goal(self):
-        """A goal in the other room: how far earlier tests have come, nobody knows."""
+        """A goal in the other room, wherever earlier tests have left the robot."""
         robot_xy = self.robot_xy()
         return pose_at(*max(IN_ONE_ROOM, IN_THE_NEXT_ROOM, key=lambda place: math.dist(place, robot_xy)))
 
     def drive(self, pose):
-        """Sends a goal and returns when the robot is under way."""
+        """Send a goal and wait until the robot drives."""
         self.client.send_goal(MoveBaseGoal(pose))
         self.wait_until(
             lambda: self.odometry.messages and self.odometry.messages[-1].twist.twist.linear.x > 0.2

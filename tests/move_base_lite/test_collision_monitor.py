@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The collision monitor in the command path: a robot steered at walls never touches one."""
+"""The collision monitor over ROS: a robot steered at walls never touches one."""
 
 import unittest
 
@@ -33,8 +33,8 @@ class TestCollisionMonitor(unittest.TestCase):
                 rospy.sleep(0.1)
         touched = [message.data for message in contacts.messages if message.data]
         self.assertEqual(touched, [])
-        said = {message.data for message in state.messages}
-        self.assertLessEqual({"clear", "slowed", "stopped"}, said)
+        states = {message.data for message in state.messages}
+        self.assertLessEqual({"clear", "slowed", "stopped"}, states)
 
 
 if __name__ == "__main__":

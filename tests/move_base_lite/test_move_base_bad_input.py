@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""move_base_lite meets what can go wrong around it: it says why, stands still, and obeys at once."""
+"""move_base_lite with invalid and missing inputs: it reports why, stops, and still accepts commands."""
 
 import subprocess
 import time
@@ -10,6 +10,7 @@ import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus, GoalStatusArray
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from fake_robot import FakeRobot
 from geometry_msgs.msg import PoseStamped, Twist
 from move_base_client import START_SECONDS, MessageRecorder, MoveBaseTestCase, pose_at
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal, RecoveryStatus
@@ -17,7 +18,6 @@ from nav_msgs.msg import OccupancyGrid, Path
 from nav_msgs.srv import GetPlan
 from roslib.packages import find_node
 from sensor_msgs.msg import PointCloud2
-from stage import Stage
 from waiting import wait_until
 
 from planar import Pose2
@@ -34,32 +34,32 @@ RECOVERIES = ("conservative_reset", "rotate_recovery", "move_slow", "aggressive_
 class TestMoveBaseBadInput(MoveBaseTestCase):
     @classmethod
     def setUpClass(cls):
-        cls.stage = Stage()
-        cls.stage.has_localization = False
+        cls.robot = FakeRobot()
+        cls.robot.has_localization = False
         cls.check_that_the_server_waits_for_map_and_transforms()
         super().setUpClass()
 
     @classmethod
     def check_that_the_server_waits_for_map_and_transforms(cls):
-        """As with the official node, the action is not there before the robot's place in the map is known."""
+        """As with the official node, the action starts only when the robot's pose in the map is known."""
         client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
         rospy.sleep(2.0)
         assert not server_is_ready(client), "neither map nor localization"
-        cls.stage.show_map()
+        cls.robot.show_map()
         rospy.sleep(2.0)
         assert not server_is_ready(client), "no localization"
-        cls.stage.has_localization = True
+        cls.robot.has_localization = True
         wait_until("the server", lambda: server_is_ready(client), START_SECONDS)
 
     def setUp(self):
-        self.stage.has_localization = self.stage.has_odometry = self.stage.has_scan = True
-        self.stage.scan_frame, self.stage.cloud_xyz = "laser", None
-        self.stage.spoil = lambda ranges: ranges
-        self.stage.base_in_odom, self.stage.odom_in_map = HERE, Pose2()
+        self.robot.has_localization = self.robot.has_odometry = self.robot.has_scan = True
+        self.robot.scan_frame, self.robot.cloud_xyz = "laser", None
+        self.robot.spoil = lambda ranges: ranges
+        self.robot.base_in_odom, self.robot.odom_in_map = HERE, Pose2()
         rospy.sleep(1.0)
 
     def assert_stands(self, after=0.3):
-        """From ``after`` seconds on, nothing but zero velocities for a while."""
+        """From ``after`` seconds on, all commands are zero for a while."""
         rospy.sleep(after)
         at = rospy.get_time()
         rospy.sleep(0.5)
@@ -70,22 +70,24 @@ class TestMoveBaseBadInput(MoveBaseTestCase):
         self.client.cancel_goal()
         self.assertEqual(self.result_of()[0], GoalStatus.PREEMPTED)
         self.wait_until(lambda: STOP in self.commands.since(at), 2.0)
-        heard = enumerate(zip(self.commands.times, self.commands.messages))
-        stop, when = next((index, when) for index, (when, command) in heard if when >= at and command == STOP)
+        received = enumerate(zip(self.commands.times, self.commands.messages))
+        stop, when = next(
+            (index, when) for index, (when, command) in received if when >= at and command == STOP
+        )
         rospy.loginfo("stopped %.3f s after the cancellation", when - at)
         self.assertLessEqual(when - at, 0.1)
         rospy.sleep(0.5)
         self.assertEqual([command for command in self.commands.messages[stop:] if command != STOP], [])
 
     def test_cancel_while_planning(self):
-        self.stage_wall(True)
+        self.block_door(True)
         plan = MessageRecorder("move_base/NavfnROS/plan", Path).connected()
         self.client.send_goal(MoveBaseGoal(pose_at(*NEXT_ROOM)))
         self.wait_until(lambda: plan.messages and not plan.messages[-1].poses)
         self.assert_stops_when_cancelled()
 
-    def test_a_goal_at_which_nothing_can_be_is_refused(self):
-        """Once it ended the control thread, and the node lived on without ever answering a goal."""
+    def test_a_goal_with_too_large_coordinates_is_refused(self):
+        """Regression: it ended the control thread, and the node never answered a goal again."""
         for far in (1e308, 1e18):
             self.client.send_goal(MoveBaseGoal(pose_at(far, 0.0)))
             state, text = self.result_of()
@@ -109,9 +111,9 @@ class TestMoveBaseBadInput(MoveBaseTestCase):
 
     def test_cancel_in_each_recovery(self):
         # The wall is in the map as well, where no recovery clears it.
-        self.addCleanup(self.stage.show_map)
-        self.stage_wall(True)
-        self.stage.show_map()
+        self.addCleanup(self.robot.show_map)
+        self.block_door(True)
+        self.robot.show_map()
         started = MessageRecorder("move_base/recovery_status", RecoveryStatus).connected()
         for number, name in enumerate(RECOVERIES):
             started.messages.clear()
@@ -126,12 +128,12 @@ class TestMoveBaseBadInput(MoveBaseTestCase):
             )
             self.assert_stops_when_cancelled()
 
-    def stage_wall(self, is_shut):
-        """Shuts the door by a wall that the laser sees, and opens it after the test."""
-        cells = self.stage.grid.cells
-        cells[24:56, 62:66] = 100 if is_shut else 0
-        if is_shut:
-            self.addCleanup(self.stage_wall, False)
+    def block_door(self, is_blocked):
+        """Put a wall into the door, which the laser observes, and remove it after the test."""
+        cells = self.robot.grid.cells
+        cells[24:56, 62:66] = 100 if is_blocked else 0
+        if is_blocked:
+            self.addCleanup(self.block_door, False)
         else:
             cells[24:32, 62:66] = cells[48:56, 62:66] = 100
 
@@ -142,14 +144,14 @@ class TestMoveBaseBadInput(MoveBaseTestCase):
                 goals.messages.clear()
                 pose = pose_at(x, 2.0 if frame == "map" else 0.0, frame)
                 pose.header.stamp = rospy.Time.from_sec(stamp)
-                at = self.stage.base_in_map
+                at = self.robot.base_in_map
                 self.assertEqual(self.end_of(pose), (GoalStatus.SUCCEEDED, "Goal reached."))
                 wanted = 1.4 if frame == "map" else at.x + 0.4
                 self.assertAlmostEqual(goals.wait().pose.position.x, wanted, delta=0.05)
 
-    def test_when_scans_stop_the_robot_stands_and_gives_up_in_the_end(self):
+    def test_when_scans_stop_the_robot_stops_and_the_goal_is_aborted(self):
         self.drive(pose_at(*NEXT_ROOM))
-        self.stage.has_scan = False
+        self.robot.has_scan = False
         # expected_update_rate is 1 s.
         self.assert_stands(after=1.3)
         self.assertTrue(self.has_active_goal())
@@ -157,14 +159,14 @@ class TestMoveBaseBadInput(MoveBaseTestCase):
         self.assertEqual(state, GoalStatus.ABORTED)
         self.assertRegex(text, rf"^{STALE} \[code=SENSOR_STALE: nothing on scan for 4\.\d s\]$")
 
-    def test_when_scans_come_back_the_robot_goes_on(self):
+    def test_when_scans_resume_the_robot_continues(self):
         self.drive(pose_at(*NEXT_ROOM))
-        self.stage.has_scan = False
+        self.robot.has_scan = False
         self.assert_stands(after=1.3)
-        self.stage.has_scan = True
+        self.robot.has_scan = True
         self.assertEqual(self.result_of(), (GoalStatus.SUCCEEDED, "Goal reached."))
 
-    def test_with_a_dead_laser_that_goes_on_talking_the_robot_stands_and_names_it(self):
+    def test_a_laser_that_publishes_implausible_scans_stops_the_robot_and_is_reported(self):
         frozen = []
 
         def freeze(ranges):
@@ -178,7 +180,7 @@ class TestMoveBaseBadInput(MoveBaseTestCase):
             self.setUp()
             diagnostics = MessageRecorder("/diagnostics", DiagnosticArray).connected()
             self.drive(pose_at(*NEXT_ROOM))
-            self.stage.spoil = spoil
+            self.robot.spoil = spoil
             self.assert_stands(after=2.0)
             status = diagnostics.messages[-1].status[0]
             self.assertEqual(
@@ -191,14 +193,14 @@ class TestMoveBaseBadInput(MoveBaseTestCase):
             self.assertIn(f"[code=TF_ERROR: waiting for a trustworthy sensor (scan: {why})]", text)
             diagnostics.close()
 
-    def test_scans_from_a_frame_that_tf_does_not_know_count_as_none(self):
+    def test_scans_from_an_unknown_frame_are_ignored(self):
         self.drive(pose_at(*NEXT_ROOM))
-        self.stage.scan_frame = "nowhere"
+        self.robot.scan_frame = "nowhere"
         self.assert_stands(after=1.3)
         self.assertRegex(self.result_of()[1], r"\[code=SENSOR_STALE: nothing on scan for 4\.\d s\]$")
 
-    def test_when_transforms_stop_the_robot_stands_and_gives_up_in_the_end(self):
-        """Who localizes needs odometry and scans: without them, it is they that are to be named."""
+    def test_when_transforms_stop_the_robot_stops_and_the_goal_is_aborted(self):
+        """Localization needs odometry and scans: if those are missing, the message names them."""
         silence = r"; nothing on /scan for \d\.\d s"
         for switched_off, frames, why in (
             (("has_odometry",), "odom -> base_footprint", ""),
@@ -209,27 +211,29 @@ class TestMoveBaseBadInput(MoveBaseTestCase):
             self.setUp()
             self.drive(pose_at(*NEXT_ROOM))
             for what in switched_off:
-                setattr(self.stage, what, False)
+                setattr(self.robot, what, False)
             self.assert_stands(after=0.8)
-            self.stage.spoil = lambda ranges: 0.7 * ranges  # somebody comes: no reason to doubt odometry
+            self.robot.spoil = (
+                lambda ranges: 0.7 * ranges
+            )  # the scene changes, as when a person passes: odometry stays trusted
             state, text = self.result_of()
             self.assertEqual(state, GoalStatus.ABORTED)
             old = rf"waiting for a transform {frames} that is not 4\.\d s old{why}"
             self.assertRegex(text, rf"^{NO_CONTROL} \[code=TF_ERROR: {old}\]$")
 
-    def test_a_cancellation_is_heard_while_transforms_are_missing(self):
+    def test_a_goal_is_cancelled_while_transforms_are_missing(self):
         self.drive(pose_at(*NEXT_ROOM))
-        self.stage.has_odometry = False
+        self.robot.has_odometry = False
         rospy.sleep(1.0)
         self.assert_stops_when_cancelled()
 
-    def test_a_jump_of_localization_changes_the_way_not_the_goal(self):
+    def test_a_jump_of_localization_changes_the_path_not_the_goal(self):
         self.drive(pose_at(*NEXT_ROOM))
-        self.stage.odom_in_map = Pose2(-0.4, 0.3, 0.1)
+        self.robot.odom_in_map = Pose2(-0.4, 0.3, 0.1)
         self.assertEqual(self.result_of(), (GoalStatus.SUCCEEDED, "Goal reached."))
-        self.assertLess(self.stage.base_in_map.distance_to(Pose2(*NEXT_ROOM)), 0.15)
+        self.assertLess(self.robot.base_in_map.distance_to(Pose2(*NEXT_ROOM)), 0.15)
 
-    def test_a_cloud_marks_what_is_at_the_robots_height_and_clears_its_way(self):
+    def test_a_cloud_marks_obstacles_at_the_robots_height_and_clears_along_its_rays(self):
         costmap = MessageRecorder("move_base/local_costmap/costmap", OccupancyGrid)
         ahead = HERE.x + 0.8, HERE.y
 
@@ -243,16 +247,16 @@ class TestMoveBaseBadInput(MoveBaseTestCase):
 
         costmap.wait()
         self.assertFalse(marked())
-        self.stage.cloud_xyz = [(0.8, 0.05 * i - 0.5, 0.3) for i in range(21)]
+        self.robot.cloud_xyz = [(0.8, 0.05 * i - 0.5, 0.3) for i in range(21)]
         self.wait_until(marked, 5.0)
-        # Too far to mark, near enough to clear the way there.
-        self.stage.cloud_xyz = [(2.8, 0.02 * i - 0.9, 0.3) for i in range(91)]
+        # Too far to mark, near enough to clear along the rays.
+        self.robot.cloud_xyz = [(2.8, 0.02 * i - 0.9, 0.3) for i in range(91)]
         self.wait_until(lambda: not marked(), 5.0)
-        self.stage.cloud_xyz = [(0.8, 0.05 * i - 0.5, 2.5) for i in range(21)]
+        self.robot.cloud_xyz = [(0.8, 0.05 * i - 0.5, 2.5) for i in range(21)]
         rospy.sleep(1.0)
         self.assertFalse(marked(), "above max_obstacle_height")
 
-    def test_a_cloud_that_means_nothing_is_ignored(self):
+    def test_an_invalid_cloud_is_ignored(self):
         publisher = rospy.Publisher("cloud", PointCloud2, queue_size=1)
         self.wait_until(publisher.get_num_connections)
         publisher.publish(PointCloud2(width=3, height=1, point_step=12, row_step=36))
@@ -273,7 +277,7 @@ class TestMoveBaseBadInput(MoveBaseTestCase):
         with self.assertRaisesRegex(rospy.ServiceException, "must be in an inactive state to make a plan"):
             make_plan(PoseStamped(), pose_at(1.0, 1.0), 0.0)
 
-    def test_status_is_told_five_times_a_second_and_goals_are_remembered_for_five(self):
+    def test_status_is_published_five_times_a_second_and_lists_goals_for_five_seconds(self):
         statuses = MessageRecorder("move_base/status", GoalStatusArray)
         self.assertEqual(self.end_of(pose_at(1.3, 2.0))[0], GoalStatus.SUCCEEDED)
         rospy.sleep(3.0)
@@ -309,9 +313,9 @@ class TestMoveBaseBadInput(MoveBaseTestCase):
         )
         self.assertNotIn("Traceback", ended.stderr)
 
-    def test_z_a_jump_back_of_time_aborts_the_goal_and_leaves_the_node_at_work(self):
+    def test_z_a_jump_back_of_time_aborts_the_goal_and_the_node_keeps_running(self):
         self.drive(pose_at(*NEXT_ROOM))
-        self.stage.now -= 20.0
+        self.robot.now -= 20.0
         until = time.monotonic() + 10.0
         while self.client.get_state() == GoalStatus.ACTIVE and time.monotonic() < until:
             time.sleep(0.1)

@@ -39,7 +39,7 @@ class TestMoveBaseContract(MoveBaseTestCase):
         cls.make_plan = rospy.ServiceProxy("move_base/make_plan", GetPlan)
         cls.make_plan.wait_for_service(30.0)
 
-    def test_a_goal_is_reached_and_says_so_in_the_official_words(self):
+    def test_a_reached_goal_has_the_official_text(self):
         current_goal, plan = (
             MessageRecorder("move_base/current_goal", PoseStamped).connected(),
             MessageRecorder("move_base/NavfnROS/plan", Path).connected(),
@@ -57,7 +57,7 @@ class TestMoveBaseContract(MoveBaseTestCase):
         self.assertEqual(self.end_of(pose_at(0.3, 0.0, "/map"))[0], GoalStatus.SUCCEEDED)
         self.assertEqual(self.end_of(pose_at(0.3, 0.0, "base_footprint"))[0], GoalStatus.SUCCEEDED)
 
-    def test_senseless_goals_are_aborted_with_a_reason(self):
+    def test_invalid_goals_are_aborted_with_a_reason(self):
         invalid = "Aborting on goal because it was sent with an invalid quaternion"
         for pose, text in [
             (pose_at(*NEAR, quaternion=(0.0, 0.0, 0.0, 0.0)), invalid),
@@ -67,11 +67,11 @@ class TestMoveBaseContract(MoveBaseTestCase):
             (pose_at(*IN_A_WALL), f"{NO_PLAN} [code=GOAL_BLOCKED: "),
             (pose_at(*NEAR, frame="nowhere"), f"{NO_PLAN} [code=TF_ERROR: "),
         ]:
-            state, said = self.end_of(pose)
+            state, result_text = self.end_of(pose)
             self.assertEqual(state, GoalStatus.ABORTED)
-            self.assertTrue(said.startswith(text), said)
+            self.assertTrue(result_text.startswith(text), result_text)
 
-    def test_the_outcome_is_told_in_move_base_flex_numbers(self):
+    def test_the_outcome_has_the_code_of_move_base_flex(self):
         feedback = MessageRecorder("move_base/nav_feedback", DiagnosticStatus).connected()
         outcomes = MessageRecorder("move_base/outcome", DiagnosticStatus).connected()
         for pose, code, reason in [
@@ -88,12 +88,12 @@ class TestMoveBaseContract(MoveBaseTestCase):
 
     def test_cancelling_stops_the_robot_within_a_period(self):
         # One period to decide, and lock-step lets the clock run one period ahead of the node. It does not
-        # wait for this test, whose own pauses count as well.
+        # wait for this test, whose own delays count too.
         is_soon = (self.seconds_to_stop() <= 2 * PERIOD + 0.02 for _ in range(TRIES))
         self.assertTrue(any(is_soon))
 
     def seconds_to_stop(self):
-        """From a cancellation to the first command to stand, simulated."""
+        """Simulated time from a cancellation to the first zero command."""
         self.come_to_rest()
         self.drive(self.far_goal())
         at = rospy.get_time()
@@ -103,16 +103,20 @@ class TestMoveBaseContract(MoveBaseTestCase):
         times = zip(self.commands.times, self.commands.messages)
         return min(time for time, message in times if time >= at and message == Twist()) - at
 
-    def test_a_goal_that_is_cancelled_before_it_is_taken_is_not_driven_to(self):
-        pause, go_on = (rospy.ServiceProxy(f"/gazebo/{name}_physics", Empty) for name in ("pause", "unpause"))
+    def test_a_goal_that_is_cancelled_before_it_is_accepted_is_not_executed(self):
+        pause, unpause = (
+            rospy.ServiceProxy(f"/gazebo/{name}_physics", Empty) for name in ("pause", "unpause")
+        )
         pause()
-        self.addCleanup(go_on)
+        self.addCleanup(unpause)
         self.client.send_goal(MoveBaseGoal(self.far_goal()))
-        rospy.rostime.wallsleep(1.0)  # what comes while time stands still is heard after half a second
+        rospy.rostime.wallsleep(
+            1.0
+        )  # messages that arrive while time stands are processed after half a second
         self.client.cancel_goal()
         rospy.rostime.wallsleep(1.0)
-        go_on()
-        # Where both are heard at one look, the cancellation comes first.
+        unpause()
+        # If both are processed at once, the cancellation comes first.
         self.assertIn(self.result_of()[0], (GoalStatus.PREEMPTED, GoalStatus.RECALLED))
 
     def test_a_new_goal_preempts_the_old_one_without_stopping(self):
@@ -138,22 +142,22 @@ class TestMoveBaseContract(MoveBaseTestCase):
         publisher.publish(pose_at(*NEAR))
         self.assertEqual(current_goal.wait().pose.position.x, NEAR[0])
         self.assertEqual(relayed.wait().goal.target_pose.pose.position.x, NEAR[0])
-        told = feedback.wait().feedback.base_position
-        self.assertEqual(told.header.frame_id, "map")
-        self.wait_until(lambda: truth.messages and truth.messages[-1].header.stamp >= told.header.stamp)
-        then = next(each for each in truth.messages if each.header.stamp >= told.header.stamp)
-        true, seen = then.pose.pose.position, told.pose.position
-        self.assertLess(math.hypot(seen.x - true.x, seen.y - true.y), 0.3, "localization")
+        position = feedback.wait().feedback.base_position
+        self.assertEqual(position.header.frame_id, "map")
+        self.wait_until(lambda: truth.messages and truth.messages[-1].header.stamp >= position.header.stamp)
+        then = next(each for each in truth.messages if each.header.stamp >= position.header.stamp)
+        true, estimate = then.pose.pose.position, position.pose.position
+        self.assertLess(math.hypot(estimate.x - true.x, estimate.y - true.y), 0.3, "localization")
 
     def test_make_plan_plans_while_idle_and_is_refused_while_active(self):
         potential = MessageRecorder("move_base/NavfnROS/potential", PointCloud2).connected()
         goal, robot_xy = self.far_goal(), self.robot_xy()
         goal_xy = (goal.pose.position.x, goal.pose.position.y)
         plan = self.make_plan(PoseStamped(), goal, 0.0).plan
-        way = [(each.pose.position.x, each.pose.position.y) for each in plan.poses]
-        self.assertLess(math.dist(way[0], robot_xy), 0.2)
-        self.assertEqual(way[-1], goal_xy)
-        self.assertGreater(len(way), math.dist(robot_xy, goal_xy) / RESOLUTION / math.sqrt(2.0))
+        path = [(each.pose.position.x, each.pose.position.y) for each in plan.poses]
+        self.assertLess(math.dist(path[0], robot_xy), 0.2)
+        self.assertEqual(path[-1], goal_xy)
+        self.assertGreater(len(path), math.dist(robot_xy, goal_xy) / RESOLUTION / math.sqrt(2.0))
         self.assertEqual(plan.header.frame_id, "")
         self.assertEqual(plan.poses[0].header.frame_id, "map")
         self.assertEqual(potential.wait().header.frame_id, "map")
@@ -166,15 +170,15 @@ class TestMoveBaseContract(MoveBaseTestCase):
         with self.assertRaisesRegex(rospy.ServiceException, "must be in an inactive state"):
             self.make_plan(PoseStamped(), pose_at(*NEAR), 0.0)
 
-    def test_each_new_listener_gets_the_whole_costmap_then_updates(self):
+    def test_each_new_subscriber_gets_the_full_costmap_then_updates(self):
         grid = MessageRecorder("map", OccupancyGrid).wait().info
         for _ in range(2):
-            whole = MessageRecorder("move_base/global_costmap/costmap", OccupancyGrid)
-            self.assertEqual(whole.wait().info.width, grid.width)
-            self.assertEqual(whole.wait().info.height, grid.height)
-            self.assertEqual(whole.wait().header.frame_id, "map")
-            whole.close()
-        whole = MessageRecorder("move_base/global_costmap/costmap", OccupancyGrid)
+            full = MessageRecorder("move_base/global_costmap/costmap", OccupancyGrid)
+            self.assertEqual(full.wait().info.width, grid.width)
+            self.assertEqual(full.wait().info.height, grid.height)
+            self.assertEqual(full.wait().header.frame_id, "map")
+            full.close()
+        full = MessageRecorder("move_base/global_costmap/costmap", OccupancyGrid)
         updates = MessageRecorder("move_base/global_costmap/costmap_updates", OccupancyGridUpdate)
         block = updates.wait()
         self.assertEqual(len(block.data), block.width * block.height)
@@ -186,7 +190,7 @@ class TestMoveBaseContract(MoveBaseTestCase):
         footprint = MessageRecorder("move_base/local_costmap/footprint", PolygonStamped)
         self.assertEqual(len(footprint.wait().polygon.points), 16)
 
-    def test_a_goal_without_a_way_tries_the_recoveries_before_it_is_aborted(self):
+    def test_a_goal_without_a_path_runs_the_recovery_behaviours_before_it_is_aborted(self):
         recoveries = MessageRecorder("move_base/recovery_status", RecoveryStatus).connected()
         state, text = self.end_of(pose_at(*INSIDE_THE_TABLE))
         self.assertEqual(state, GoalStatus.ABORTED)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""move_base that is ended while it drives: the robot stops, and who has sent the goal hears of it."""
+"""move_base that is shut down while it drives: the robot stops, and the client gets a result."""
 
 import math
 
@@ -28,16 +28,16 @@ class TestMoveBaseEnd(MoveBaseTestCase):
         self.assertLess(self.distance_since(results.wait().header.stamp), STOPPING_DISTANCE)
 
     def distance_since(self, stamp):
-        """From where the robot was then to where it is, metres, by the stamps: odometry is heard late."""
-        heard = self.odometry.messages
-        start = next(message for message in heard if message.header.stamp >= stamp).pose.pose.position
-        end = heard[-1].pose.pose.position
+        """Distance between the poses at ``stamp`` and now [m]; odometry is matched by its stamps."""
+        received = self.odometry.messages
+        start = next(message for message in received if message.header.stamp >= stamp).pose.pose.position
+        end = received[-1].pose.pose.position
         distance = math.hypot(end.x - start.x, end.y - start.y)
         print(f"came to rest {distance:.3f} m from where move_base ended")
         return distance
 
     def tearDown(self):
-        """Nobody is left to come to rest."""
+        """Skip the wait for rest: the node is gone."""
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""move_base_lite is changed while it runs: dynamic_reconfigure, footprint, zones."""
+"""Changes of move_base_lite at run time: dynamic_reconfigure, footprint, zones."""
 
 import dynamic_reconfigure.client
 import rospy
@@ -54,14 +54,14 @@ def client_of(name):
 
 class TestMoveBaseTuning(MoveBaseTestCase):
     def tune(self, name, **values):
-        """Changes values now and back after the test."""
+        """Change values, and restore them after the test."""
         client = client_of(name)
         before = client.get_configuration(timeout=10.0)
         self.addCleanup(lambda: client.update_configuration({key: before[key] for key in values}))
         return client.update_configuration(values)
 
     def cost_at(self, topic, x, y):
-        """The newest whole costmap's value at a point of its frame."""
+        """Value of the latest full costmap at a point of its frame."""
         costmap = MessageRecorder(topic, OccupancyGrid)
         info = costmap.wait().info
         column = int((x - info.origin.position.x) / info.resolution)
@@ -87,8 +87,8 @@ class TestMoveBaseTuning(MoveBaseTestCase):
         self.wait_until(is_slow, 3.0)
         self.assertTrue(self.has_active_goal())
 
-    def test_another_local_planner_takes_over_on_the_way(self):
-        costs, ways = (
+    def test_the_local_planner_is_replaced_while_driving(self):
+        costs, trajectories = (
             MessageRecorder(f"move_base/DWAPlannerROS/{name}", PointCloud2)
             for name in ("cost_cloud", "trajectory_cloud")
         )
@@ -98,18 +98,18 @@ class TestMoveBaseTuning(MoveBaseTestCase):
         fields = points_of(costs.wait())
         self.assertEqual(list(fields), ["x", "y", "z", "path_cost", "goal_cost", "occ_cost", "total_cost"])
         self.assertLess(fields["occ_cost"].max(), INSCRIBED)
-        fields = points_of(ways.wait())
+        fields = points_of(trajectories.wait())
         self.assertEqual(list(fields), ["x", "y", "z", "theta", "cost"])
-        self.assertGreater(len(set(fields["cost"])), 10, "ways tried")
-        self.assertEqual({ways.wait().header.frame_id, costs.wait().header.frame_id}, {"odom"})
+        self.assertGreater(len(set(fields["cost"])), 10, "trajectories evaluated")
+        self.assertEqual({trajectories.wait().header.frame_id, costs.wait().header.frame_id}, {"odom"})
         self.assertEqual(self.result_of()[0], GoalStatus.SUCCEEDED)
 
-    def test_a_planner_that_is_not_there_leaves_the_old_one(self):
+    def test_an_unknown_planner_is_refused(self):
         config = self.tune("move_base", base_global_planner="nowhere/Planner", planner_patience=3.0)
         self.assertEqual(config["base_global_planner"], "navfn/NavfnROS")
         self.assertEqual(config["planner_patience"], 5.0)
 
-    def test_senseless_values_change_nothing(self):
+    def test_invalid_values_change_nothing(self):
         config = self.tune("move_base/MppiPlannerROS", max_vel_x=-2.0)
         self.assertEqual(config["max_vel_x"], 0.6)
 
@@ -135,7 +135,7 @@ class TestMoveBaseTuning(MoveBaseTestCase):
         self.tune("move_base/global_costmap/static_layer", enabled=True)
         self.assertEqual(len(plan(*through_a_wall_out_of_sight).plan.poses), length)
 
-    def test_a_new_footprint_is_taken_from_its_topic_and_shown(self):
+    def test_a_footprint_from_the_topic_is_applied_and_published(self):
         shown = MessageRecorder("move_base/local_costmap/footprint", PolygonStamped)
         self.assertEqual(len(shown.wait().polygon.points), 16)
         publisher = rospy.Publisher("move_base/local_costmap/footprint", Polygon, queue_size=1)

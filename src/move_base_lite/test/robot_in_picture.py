@@ -42,7 +42,7 @@ def two_rooms(door):
 
 
 class Robot:
-    """A unicycle of limited acceleration, with odometry off by a turn and a laser of 180 beams."""
+    """A unicycle with limited acceleration, a rotated odometry frame and a laser of 180 beams."""
 
     ODOM_IN_MAP = Pose2(0.4, -0.3, 0.8)
 
@@ -71,8 +71,8 @@ class Robot:
     def drive(self, command):
         self.now += PERIOD
         v = self.twist.v + np.clip(command.v - self.twist.v, -0.2, 0.2)
-        change, wanted = self.turn_acceleration * PERIOD, self.turns_too_fast_by * command.omega
-        omega = self.twist.omega + np.clip(wanted - self.twist.omega, -change, change)
+        change, target = self.turn_acceleration * PERIOD, self.turns_too_fast_by * command.omega
+        omega = self.twist.omega + np.clip(target - self.twist.omega, -change, change)
         self.twist = Twist2(float(v), float(omega))
         angle = self.twist.omega * PERIOD
         self.pose = self.pose @ Pose2(

@@ -1,4 +1,4 @@
-"""The collision monitor: no command drives the robot into what it sees, and none is held back for nothing."""
+"""The collision monitor: no command leads to a collision, and safe commands pass."""
 
 import math
 from dataclasses import asdict
@@ -23,7 +23,7 @@ NOTHING = np.empty((0, 2))
 
 
 def wall(x):
-    """Points of a wall across the way, ``x`` metres ahead."""
+    """Points of a wall across the path, ``x`` metres ahead."""
     return np.column_stack((np.full(41, x), np.linspace(-1.0, 1.0, 41)))
 
 
@@ -31,27 +31,27 @@ def limit_command(command, points_xy, settings=SETTINGS):
     return CollisionMonitor(settings).limit_command(command, points_xy)
 
 
-def test_a_command_passes_where_nothing_is_near():
+def test_a_command_passes_without_near_obstacles():
     for points_xy in (NOTHING, wall(2.0)):
         command = Twist2(0.5, 0.3)
         assert limit_command(command, points_xy) == LimitedCommand(command, CLEAR)
 
 
 def test_a_command_towards_a_wall_is_slowed_and_stopped_at_the_distance():
-    verdict = limit_command(Twist2(0.5), wall(0.55))
-    assert verdict.reason == SLOWED
-    # 0.3 m of way are left at 0.5 m/s, and a collision is to be a second off.
-    assert verdict.command.v == pytest.approx(0.3, abs=0.03)
+    limited = limit_command(Twist2(0.5), wall(0.55))
+    assert limited.reason == SLOWED
+    # 0.3 m remain at 0.5 m/s, and the time to collision is 1 s.
+    assert limited.command.v == pytest.approx(0.3, abs=0.03)
     assert limit_command(Twist2(0.5), wall(0.26)) == LimitedCommand(Twist2(), STOPPED)
 
 
 def test_an_arc_keeps_its_shape_when_it_is_slowed():
-    verdict = limit_command(Twist2(0.6, 0.3), wall(0.6))
-    assert verdict.reason == SLOWED
-    assert verdict.command.omega / verdict.command.v == pytest.approx(0.5)
+    limited = limit_command(Twist2(0.6, 0.3), wall(0.6))
+    assert limited.reason == SLOWED
+    assert limited.command.omega / limited.command.v == pytest.approx(0.5)
 
 
-def test_a_robot_that_touches_may_leave_but_not_go_on():
+def test_a_robot_in_contact_may_only_move_away():
     touching = wall(0.2)
     assert limit_command(Twist2(-0.2), touching).reason == CLEAR
     assert limit_command(Twist2(0.2), touching).reason == STOPPED
@@ -66,13 +66,13 @@ def test_a_long_robot_does_not_turn_into_a_wall_beside_it():
     assert limit_command(Twist2(0.0, 1.0), beside, settings).reason != CLEAR
 
 
-def test_what_lies_well_inside_the_outline_is_the_robot_itself():
+def test_points_well_inside_the_outline_belong_to_the_robot():
     assert limit_command(Twist2(0.5), np.array([[0.1, 0.0]])).reason == CLEAR
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_nothing_is_ever_touched_whatever_is_commanded(seed):
-    """Random commands among random posts, the robot moved exactly as it is told, ten times a second."""
+def test_random_commands_never_lead_to_a_collision(seed):
+    """Random commands among random posts; the robot follows the limited commands exactly at 10 Hz."""
     rng = np.random.default_rng(seed)
     posts_xy = rng.uniform(-3.0, 3.0, (40, 2))
     posts_xy = posts_xy[np.hypot(*posts_xy.T) > 0.4]
@@ -97,12 +97,12 @@ def test_nothing_is_ever_touched_whatever_is_commanded(seed):
         ({"footprint": ((0.0, 0.0), (1.0, 0.0))}, "footprint must be at least 3 points"),
     ],
 )
-def test_senseless_settings_are_refused(values, reason):
+def test_invalid_settings_are_refused(values, reason):
     with pytest.raises(SettingsError, match=reason):
         MonitorSettings(**values)
 
 
-def test_the_configuration_holds_the_defaults():
+def test_the_configuration_contains_the_defaults():
     path = Path(__file__).parents[1] / "config" / "collision_monitor.yaml"
     values = yaml.safe_load(path.read_text())
     assert values == {**asdict(MonitorSettings()), "footprint": []}

@@ -1,4 +1,4 @@
-"""The contract of layers: what any of them, whoever wrote it, has to do; and one of one's own."""
+"""The contract of costmap layers, and a user-defined layer."""
 
 from dataclasses import dataclass
 
@@ -30,11 +30,11 @@ def test_a_layer_keeps_its_contract(member, check):
 
 @dataclass(frozen=True)
 class LineSettings(LayerSettings):
-    col: int = parameter(3, "that must not be crossed")
+    col: int = parameter(3, "column that must not be crossed")
 
 
 class LineLayer(Layer):
-    """A layer of somebody's own."""
+    """A user-defined layer."""
 
     def __init__(self, settings, site):
         self._col = settings.col
@@ -43,7 +43,7 @@ class LineLayer(Layer):
         costs[bounds.row_min : bounds.row_max, self._col] = LETHAL
 
 
-def test_a_layer_of_ones_own_lies_below_inflation(monkeypatch):
+def test_a_user_defined_layer_is_inflated(monkeypatch):
     line = Plugin("mine::LineLayer", LineSettings, LineLayer)
     layers = Registry(*LAYERS.members, line, contract=LAYERS.contract, guarded=GuardedLayer)
     monkeypatch.setattr("move_base_lite.costmap.costmap.LAYERS", layers)

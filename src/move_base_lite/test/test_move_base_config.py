@@ -1,4 +1,4 @@
-"""Official parameters become settings; what is wrong or unknown is named."""
+"""Conversion of official parameters to settings; invalid and unknown ones are reported."""
 
 from dataclasses import fields
 from pathlib import Path
@@ -24,7 +24,7 @@ DOCUMENTED = yaml.safe_load((CONFIG / "move_base_lite.yaml").read_text())
 
 
 @pytest.mark.parametrize(
-    "kind, keys, not_there",
+    "kind, keys, not_listed",
     [
         (MoveBaseSettings, [], set()),
         (NavfnSettings, ["NavfnROS"], {"use_astar"}),
@@ -39,12 +39,12 @@ DOCUMENTED = yaml.safe_load((CONFIG / "move_base_lite.yaml").read_text())
         (InflationSettings, ["global_costmap", "inflation_layer"], set()),
     ],
 )
-def test_each_default_is_documented_as_it_is(kind, keys, not_there):
+def test_each_default_is_listed_in_the_configuration_file(kind, keys, not_listed):
     tree = DOCUMENTED
     for key in keys:
         tree = tree[key]
     for item in fields(kind):
-        if item.name not in not_there:
+        if item.name not in not_listed:
             default = getattr(kind(), item.name)
             assert tree[item.name] == (list(default) if isinstance(default, tuple) else default), item.name
 
@@ -55,7 +55,7 @@ def test_a_shipped_file_is_read_without_a_warning(name):
     assert warnings == []
 
 
-def test_the_preset_has_both_costmaps_as_they_are_needed():
+def test_the_preset_configures_both_costmaps():
     settings = load_settings(CONFIG / "turtlebot.yaml")
     assert settings.global_costmap.static.enabled
     assert not settings.local_costmap.static.enabled
@@ -66,7 +66,7 @@ def test_the_preset_has_both_costmaps_as_they_are_needed():
         assert costmap.obstacles.sources[0].inf_is_valid
 
 
-def test_files_in_the_manner_before_plugins_are_understood():
+def test_costmap_parameters_from_before_plugins_are_accepted():
     settings, _ = settings_from_parameters(
         {
             "global_costmap": {
@@ -86,7 +86,7 @@ def test_files_in_the_manner_before_plugins_are_understood():
     assert (bump.topic, bump.clearing, bump.data_type) == ("bump", False, "PointCloud2")
 
 
-def test_old_names_of_dwa_are_honoured_with_a_warning():
+def test_old_names_of_dwa_are_accepted_with_a_warning():
     settings, warnings = settings_from_parameters(
         {**DWA, "DWAPlannerROS": {"max_trans_vel": 0.3, "max_rot_vel": 5.0}}
     )
@@ -102,7 +102,7 @@ def test_the_latch_is_accepted_at_both_levels():
         assert settings_from_parameters(parameters)[0].controller.latch_xy_goal_tolerance
 
 
-def test_a_footprint_may_be_written_as_text_and_stand_above_the_costmaps():
+def test_a_footprint_can_be_text_and_is_inherited_by_the_costmaps():
     corners = "[[0.2, 0.1], [0.2, -0.1], [-0.2, 0.0]]"
     settings, _ = settings_from_parameters({"footprint": corners})
     assert settings.local_costmap.footprint == ((0.2, 0.1), (0.2, -0.1), (-0.2, 0.0))
@@ -128,13 +128,13 @@ def test_a_footprint_may_be_written_as_text_and_stand_above_the_costmaps():
         ),
     ],
 )
-def test_a_senseless_value_is_refused_by_its_full_name(parameters, text):
+def test_an_invalid_value_is_refused_with_its_full_name(parameters, text):
     with pytest.raises(SettingsError) as caught:
         settings_from_parameters(parameters, "/move_base/")
     assert text in str(caught.value)
 
 
-def test_an_unknown_name_is_warned_of():
+def test_an_unknown_name_causes_a_warning():
     parameters = {**DWA, "DWAPlannerROS": {"sim_tme": 1.0, "zebra": 2}, "planner_frequncy": 1.0}
     _, warnings = settings_from_parameters(parameters, "/move_base/")
     assert warnings == [
@@ -144,7 +144,7 @@ def test_an_unknown_name_is_warned_of():
     ]
 
 
-def test_parameters_of_trajectory_planner_are_read_by_their_own_names_and_defaults():
+def test_trajectory_planner_has_parameters_and_defaults_different_from_dwa():
     own = {"max_rotational_vel": 0.8, "pdist_scale": 0.9, "dwa": False, "escape_vel": -0.1}
     settings, warnings = settings_from_parameters({"TrajectoryPlannerROS": own})
     controller = settings.controller
@@ -154,7 +154,7 @@ def test_parameters_of_trajectory_planner_are_read_by_their_own_names_and_defaul
     assert warnings == []
 
 
-def test_ranges_of_sensors_are_searched_for_upwards():
+def test_ranges_of_sources_are_inherited_from_enclosing_namespaces():
     layer = {
         "observation_sources": "front back",
         "raytrace_range": 6.0,
@@ -174,7 +174,7 @@ def test_ranges_of_sensors_are_searched_for_upwards():
     "costmap, layer, tracks",
     [(True, {}, True), (False, {}, False), (False, {"track_unknown_space": True}, True)],
 )
-def test_a_layer_tracks_the_unknown_as_its_costmap_does_unless_it_says_otherwise(costmap, layer, tracks):
+def test_a_layer_inherits_track_unknown_space_from_its_costmap(costmap, layer, tracks):
     plugins = [{"name": "obstacle_layer", "type": "costmap_2d::ObstacleLayer"}]
     parameters = {"track_unknown_space": costmap, "plugins": plugins, "obstacle_layer": layer}
     settings, warnings = settings_from_parameters({"global_costmap": parameters})
@@ -182,7 +182,7 @@ def test_a_layer_tracks_the_unknown_as_its_costmap_does_unless_it_says_otherwise
     assert warnings == []
 
 
-def test_no_plan_leads_through_what_the_map_does_not_know_if_the_layer_tracks_it():
+def test_plans_avoid_unknown_cells_if_the_layer_tracks_them():
     parameters = yaml.safe_load((CONFIG / "turtlebot.yaml").read_text())
     parameters["global_costmap"]["obstacle_layer"]["track_unknown_space"] = True
     settings, _ = settings_from_parameters(parameters)
@@ -200,32 +200,32 @@ def test_move_slow_and_clear_is_read():
     assert warnings == []
 
 
-@pytest.mark.parametrize("listed", [5, [{"name": ["a"], "type": "b"}], [{"name": "a"}], "look"])
-def test_instead_of_recoveries_that_are_none_there_are_the_default_ones(listed):
+@pytest.mark.parametrize("listed", [5, [{"name": ["a"], "type": "b"}], [{"name": "a"}], "rotate"])
+def test_an_invalid_list_of_recovery_behaviours_is_replaced_by_the_default(listed):
     settings, warnings = settings_from_parameters({"recovery_behaviors": listed})
     assert settings.recoveries == settings_from_parameters({})[0].recoveries
     assert "recovery_behaviors must be a list of {name, type}" in warnings[0]
 
 
-def test_a_layer_to_clear_that_is_no_name_is_warned_of():
-    listed = [{"name": "forget", "type": "clear_costmap_recovery/ClearCostmapRecovery"}]
+def test_an_unknown_layer_to_clear_causes_a_warning():
+    listed = [{"name": "clear", "type": "clear_costmap_recovery/ClearCostmapRecovery"}]
     _, warnings = settings_from_parameters(
-        {"recovery_behaviors": listed, "forget": {"layer_names": [["obstacle_layer"]]}}
+        {"recovery_behaviors": listed, "clear": {"layer_names": [["obstacle_layer"]]}}
     )
     assert "no costmap has a layer ['obstacle_layer']" in warnings[0]
 
 
-def test_recoveries_come_in_the_configured_order():
+def test_recovery_behaviours_have_the_configured_order():
     listed = [
-        {"name": "look", "type": "rotate_recovery/RotateRecovery"},
-        {"name": "forget", "type": "clear_costmap_recovery/ClearCostmapRecovery"},
+        {"name": "rotate", "type": "rotate_recovery/RotateRecovery"},
+        {"name": "clear", "type": "clear_costmap_recovery/ClearCostmapRecovery"},
     ]
-    settings, _ = settings_from_parameters({"recovery_behaviors": listed, "forget": {"reset_distance": 1.5}})
-    assert [recovery.name for recovery in settings.recoveries] == ["look", "forget"]
+    settings, _ = settings_from_parameters({"recovery_behaviors": listed, "clear": {"reset_distance": 1.5}})
+    assert [recovery.name for recovery in settings.recoveries] == ["rotate", "clear"]
     assert settings.recoveries[1].settings.reset_distance == 1.5
 
 
-def test_no_parameters_at_all_mean_the_official_defaults():
+def test_without_parameters_the_official_defaults_apply():
     settings, warnings = settings_from_parameters({})
     assert settings.move_base == NavigatorSettings().move_base
     assert isinstance(settings.controller, DwaSettings), "TrajectoryPlannerROS"
@@ -236,14 +236,14 @@ def test_no_parameters_at_all_mean_the_official_defaults():
     assert warnings == []
 
 
-def test_of_nested_parameters_those_above_win():
+def test_merged_parameters_override_nested_values():
     below = {"a": {"b": 1, "c": 2}, "d": 1}
     assert merged(below, {"a": {"c": 3}, "d": {"e": 4}}) == {"a": {"b": 1, "c": 3}, "d": {"e": 4}}
     assert below == {"a": {"b": 1, "c": 2}, "d": 1}
 
 
 @pytest.mark.parametrize("name", ["turtlebot3_burger", "turtlebot3_waffle", "turtlebot_kinect"])
-def test_what_differs_for_another_robot_is_known_and_changes_something(name):
+def test_each_robot_file_has_valid_parameters_and_changes_the_preset(name):
     preset = load_settings(CONFIG / "turtlebot.yaml")
     assert load_settings(CONFIG / "turtlebot.yaml", CONFIG / f"{name}.yaml") != preset
     parameters = yaml.safe_load((CONFIG / f"{name}.yaml").read_text())
@@ -253,10 +253,10 @@ def test_what_differs_for_another_robot_is_known_and_changes_something(name):
     )
 
 
-def test_a_value_of_a_wrong_type_can_count_as_not_set():
+def test_a_value_of_a_wrong_type_can_be_ignored_with_a_warning():
     own = {"max_vel_x": "fast", "max_vel_theta": 0.7}
     parameters = {"base_local_planner": "dwa_local_planner/DWAPlannerROS", "DWAPlannerROS": own}
     settings, warnings = settings_from_parameters(parameters, "/move_base/", is_lenient=True)
     assert settings.controller.max_vel_theta == 0.7
-    complaint = "/move_base/DWAPlannerROS/max_vel_x must be a number, got 'fast': it counts as not set"
-    assert complaint in warnings
+    message = "/move_base/DWAPlannerROS/max_vel_x must be a number, got 'fast': it counts as not set"
+    assert message in warnings

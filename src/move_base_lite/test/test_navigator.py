@@ -1,4 +1,4 @@
-"""The Navigator on a kinematic robot: it arrives, goes round, gives up with a reason, and obeys at once."""
+"""The Navigator on a kinematic robot: it reaches goals, avoids obstacles, aborts and cancels."""
 
 import math
 from dataclasses import replace
@@ -28,7 +28,7 @@ LOCAL_PLANNERS = ("dwa_local_planner/DWAPlannerROS", "move_base_lite/MppiPlanner
 
 @pytest.fixture(params=LOCAL_PLANNERS)
 def settings(request):
-    """The preset, with each local planner in turn; DWA with plans as navfn makes them."""
+    """The preset with each local planner; DWA with navfn's plans."""
     parameters = yaml.safe_load(PRESET.read_text())
     parameters["NavfnROS"]["any_angle"] = "Mppi" in request.param
     return settings_from_parameters({**parameters, "base_local_planner": request.param})[0]
@@ -45,7 +45,7 @@ def test_the_robot_passes_a_door(settings, door, start):
     assert not any(decision.recovery for decision in decisions)
 
 
-def test_what_dwa_has_chosen_from_can_be_looked_at():
+def test_dwa_reports_the_samples_it_evaluated():
     parameters = {**yaml.safe_load(PRESET.read_text()), "base_local_planner": LOCAL_PLANNERS[0]}
     grid = two_rooms(0.9)
     robot, navigator = Robot(grid, Pose2(1.0, 2.0)), Navigator(settings_from_parameters(parameters)[0], grid)
@@ -59,8 +59,8 @@ def test_what_dwa_has_chosen_from_can_be_looked_at():
     assert beside_plan[to_path == 0.0].max() < navigator.local_costmap.window.resolution
     assert cost.max() < INSCRIBED
     controller = navigator.settings.controller
-    way = controller.path_distance_bias * to_path + controller.goal_distance_bias * to_goal
-    assert np.allclose(total, 0.05 * way + controller.occdist_scale * cost)
+    distance_cost = controller.path_distance_bias * to_path + controller.goal_distance_bias * to_goal
+    assert np.allclose(total, 0.05 * distance_cost + controller.occdist_scale * cost)
 
 
 def test_the_robot_leaves_a_trap_whose_end_is_near_the_goal(settings):
@@ -73,7 +73,7 @@ def test_the_robot_leaves_a_trap_whose_end_is_near_the_goal(settings):
     assert_arrived(robot, drive_to_end(robot, navigator), goal)
 
 
-def test_a_box_that_the_map_does_not_show_is_driven_around(settings):
+def test_the_robot_avoids_a_box_that_is_not_in_the_map(settings):
     grid, goal = room(6.0, 4.0), Pose2(5.4, 2.0)
     robot = Robot(with_block(grid, 2.8, 1.7, 3.2, 2.3), Pose2(0.6, 2.0))
     navigator = Navigator(settings, grid)
@@ -83,7 +83,7 @@ def test_a_box_that_the_map_does_not_show_is_driven_around(settings):
     assert not any(decision.recovery for decision in decisions)
 
 
-def test_a_box_in_the_door_stops_the_robot_until_it_is_taken_away(settings):
+def test_a_box_in_the_door_stops_the_robot_until_it_is_removed(settings):
     grid, goal = two_rooms(0.9), Pose2(5.4, 2.0)
     robot, navigator = Robot(with_block(grid, 2.8, 1.4, 3.0, 2.6), Pose2(0.8, 2.0)), Navigator(settings, grid)
     navigator.set_goal(goal)
@@ -94,7 +94,7 @@ def test_a_box_in_the_door_stops_the_robot_until_it_is_taken_away(settings):
     assert_arrived(robot, drive_to_end(robot, navigator), goal)
 
 
-def test_a_goal_that_nothing_leads_to_is_given_up_after_all_recoveries_with_a_reason(settings):
+def test_an_unreachable_goal_is_aborted_after_all_recovery_behaviours_with_a_reason(settings):
     grid = two_rooms(0.0)
     robot, navigator = Robot(grid, Pose2(1.0, 2.0)), Navigator(settings, grid)
     navigator.set_goal(Pose2(5.0, 2.0))
@@ -118,7 +118,7 @@ def test_a_goal_that_nothing_leads_to_is_given_up_after_all_recoveries_with_a_re
 
 
 def two_doors():
-    """Two rooms with doors at both ends of the wall between them; and those with something in each door."""
+    """Two rooms connected by two doors, and the same with both doors blocked."""
     grid = with_block(room(6.1, 7.0), 3.0, 0.0, 3.1, 7.0)
     doors = ((3.0, 0.5, 3.1, 1.5), (3.0, 5.5, 3.1, 6.5))
     for door in doors:
@@ -129,7 +129,7 @@ def two_doors():
     return grid, blocked
 
 
-def test_a_goal_behind_doors_that_are_all_blocked_is_given_up_although_clearing_forgets_them(settings):
+def test_a_goal_behind_blocked_doors_is_aborted_although_clearing_removes_them_from_the_costmap(settings):
     grid, blocked = two_doors()
     robot, navigator = Robot(blocked, Pose2(1.0, 3.5)), Navigator(settings, grid)
     navigator.set_goal(Pose2(5.0, 3.5))
@@ -141,7 +141,7 @@ def test_a_goal_behind_doors_that_are_all_blocked_is_given_up_although_clearing_
     assert names == [recovery.name for recovery in settings.recoveries]
 
 
-def test_a_door_that_opens_while_the_robot_looks_for_a_way_is_taken(settings):
+def test_a_door_that_opens_during_recovery_is_used(settings):
     grid, blocked = two_doors()
     goal = Pose2(5.0, 3.5)
     robot, navigator = Robot(blocked, Pose2(1.0, 3.5)), Navigator(settings, grid)
@@ -157,7 +157,7 @@ def test_a_door_that_opens_while_the_robot_looks_for_a_way_is_taken(settings):
     "goal, code",
     [(Pose2(3.05, 1.0), "GOAL_BLOCKED"), (Pose2(2.9, 1.0), "GOAL_BLOCKED"), (Pose2(9.0, 1.0), "OUT_OF_MAP")],
 )
-def test_a_goal_that_can_never_be_stood_on_is_given_up_at_once(settings, goal, code):
+def test_a_goal_that_can_never_be_reached_is_aborted_at_once(settings, goal, code):
     grid = two_rooms(0.9)
     robot, navigator = Robot(grid, Pose2(1.0, 2.0)), Navigator(settings, grid)
     navigator.set_goal(goal)
@@ -167,7 +167,7 @@ def test_a_goal_that_can_never_be_stood_on_is_given_up_at_once(settings, goal, c
     assert f"[code={code}: the goal at ({goal.x:.2f}, {goal.y:.2f}) is " in decision.text
 
 
-def test_a_cancelled_robot_is_told_to_stop_in_the_same_tick_whatever_it_is_doing(settings):
+def test_a_cancelled_goal_stops_the_robot_in_the_same_tick_in_every_state(settings):
     grid = two_rooms(0.0)
     for goal, wanted in [
         (Pose2(2.0, 3.0), Status.CONTROLLING),
@@ -185,7 +185,7 @@ def test_a_cancelled_robot_is_told_to_stop_in_the_same_tick_whatever_it_is_doing
         assert robot.tick(navigator).command is None
 
 
-def test_a_robot_that_turns_a_third_faster_than_it_is_told_is_not_spun_up(settings):
+def test_a_robot_that_turns_a_third_faster_than_commanded_does_not_spin_up(settings):
     grid, goal = room(6.0, 4.0), Pose2(5.4, 3.0, -2.0)
     robot, navigator = Robot(grid, Pose2(0.6, 1.0, 3.0)), Navigator(settings, grid)
     robot.turns_too_fast_by, robot.turn_acceleration = 4.0 / 3.0, 100.0
@@ -194,7 +194,7 @@ def test_a_robot_that_turns_a_third_faster_than_it_is_told_is_not_spun_up(settin
     assert_arrived(robot, drive_to_end(robot, navigator), goal)
 
 
-def test_a_new_goal_is_taken_over_without_stopping(settings):
+def test_a_new_goal_preempts_the_old_one_without_stopping(settings):
     grid, goal = room(6.0, 4.0), Pose2(5.4, 3.0)
     robot, navigator = Robot(grid, Pose2(0.6, 2.0)), Navigator(settings, grid)
     navigator.set_goal(Pose2(5.4, 2.0))
@@ -205,7 +205,7 @@ def test_a_new_goal_is_taken_over_without_stopping(settings):
     assert_arrived(robot, drive_to_end(robot, navigator), goal)
 
 
-def test_a_robot_that_is_carried_away_while_it_turns_at_its_goal_drives_back(settings):
+def test_a_robot_that_is_displaced_while_it_turns_at_its_goal_drives_back(settings):
     grid, goal = room(4.0, 4.0), Pose2(2.0, 2.0, 3.0)
     robot, navigator = Robot(grid, Pose2(1.2, 2.0)), Navigator(settings, grid)
     navigator.set_goal(goal)
@@ -215,8 +215,8 @@ def test_a_robot_that_is_carried_away_while_it_turns_at_its_goal_drives_back(set
     assert_arrived(robot, drive_to_end(robot, navigator), goal)
 
 
-def believing(robot, jump):
-    """A robot whose estimate is off by ``jump(robot)`` metres sideways; its odometry is right."""
+def with_estimate_error(robot, jump):
+    """A robot whose localization is off by ``jump(robot)`` metres sideways; its odometry is correct."""
     true_tick = Navigator.tick
 
     def tick(navigator):
@@ -236,24 +236,24 @@ def believing(robot, jump):
 
 
 @pytest.mark.parametrize("offset", [0.25, 0.3, 0.4])
-def test_a_robot_that_believes_itself_elsewhere_whenever_it_turns_arrives_all_the_same(settings, offset):
+def test_a_goal_is_reached_although_localization_jumps_whenever_the_robot_turns(settings, offset):
     grid, goal = room(4.0, 4.0), Pose2(2.0, 2.0, 3.0)
     robot, navigator = Robot(grid, Pose2(1.0, 2.0)), Navigator(settings, grid)
-    believing(robot, lambda robot: offset if abs(wrap(robot.pose.yaw - goal.yaw)) < 1.0 else 0.0)
+    with_estimate_error(robot, lambda robot: offset if abs(wrap(robot.pose.yaw - goal.yaw)) < 1.0 else 0.0)
     navigator.set_goal(goal)
     assert drive_to_end(robot, navigator)[-1].text == "Goal reached."
 
 
-def test_an_estimate_that_jumps_to_and_fro_is_no_progress_of_a_robot_that_stands(settings):
+def test_jumps_of_localization_do_not_count_as_progress_of_a_robot_that_stands(settings):
     grid = room(6.0, 4.0)
     robot, navigator = Robot(grid, Pose2(1.0, 2.0)), Navigator(settings, grid)
     robot.drive = lambda command: setattr(robot, "now", robot.now + PERIOD)
-    believing(robot, lambda robot: 0.7 if robot.now % 10.0 < 5.0 else 0.0)
+    with_estimate_error(robot, lambda robot: 0.7 if robot.now % 10.0 < 5.0 else 0.0)
     navigator.set_goal(Pose2(5.0, 2.0))
     assert drive_to_end(robot, navigator)[-1].outcome.reason == "OSCILLATION"
 
 
-def test_an_ended_goal_says_so_once_and_leaves_the_robot_alone(settings):
+def test_the_end_of_a_goal_is_reported_once(settings):
     grid = room(3.0, 3.0)
     robot, navigator = Robot(grid, Pose2(1.5, 1.5)), Navigator(settings, grid)
     navigator.set_goal(Pose2(1.5, 1.5))
@@ -262,7 +262,7 @@ def test_an_ended_goal_says_so_once_and_leaves_the_robot_alone(settings):
     assert (decision.status, decision.command, navigator.is_active) == (Status.IDLE, None, False)
 
 
-def test_without_scans_the_robot_stops_and_after_a_while_gives_up(settings):
+def test_without_scans_the_robot_stops_and_the_goal_is_aborted_later(settings):
     grid = room(6.0, 4.0)
     robot, navigator = Robot(grid, Pose2(0.6, 2.0)), Navigator(settings, grid)
     navigator.set_goal(Pose2(5.4, 2.0))
@@ -278,14 +278,14 @@ def test_without_scans_the_robot_stops_and_after_a_while_gives_up(settings):
     assert "[code=SENSOR_STALE: nothing on scan for 1" in decision.text
 
 
-def test_a_robot_pushed_against_a_wall_gets_away_from_it(settings):
+def test_a_robot_in_contact_with_a_wall_drives_away_from_it(settings):
     grid, goal = room(4.0, 4.0), Pose2(3.0, 2.0)
     robot, navigator = Robot(grid, Pose2(0.1 + BODY_RADIUS + 0.01, 2.0, math.pi)), Navigator(settings, grid)
     navigator.set_goal(goal)
     assert_arrived(robot, drive_to_end(robot, navigator), goal)
 
 
-def test_a_robot_that_does_not_move_is_given_up_with_that_reason(settings):
+def test_a_robot_that_does_not_move_aborts_its_goal_with_that_reason(settings):
     grid = room(6.0, 4.0)
     robot, navigator = Robot(grid, Pose2(1.0, 2.0)), Navigator(settings, grid)
     robot.drive = lambda command: setattr(robot, "now", robot.now + PERIOD)
@@ -313,16 +313,16 @@ def test_after_move_slow_and_clear_the_robot_is_slow_until_it_has_moved_on(setti
     assert max(v for moved, v in speeds if moved > 0.8) > 0.4
 
 
-def test_what_is_left_is_told_all_the_way(settings):
+def test_the_remaining_distance_and_time_are_reported_while_driving(settings):
     grid = room(6.0, 4.0)
     robot, navigator = Robot(grid, Pose2(0.6, 2.0)), Navigator(settings, grid)
     navigator.set_goal(Pose2(5.4, 2.0))
-    *on_the_way, last = drive_to_end(robot, navigator)
-    left = [decision.progress.distance_left for decision in on_the_way[1:]]
+    *driving, last = drive_to_end(robot, navigator)
+    left = [decision.progress.distance_left for decision in driving[1:]]
     assert left[0] == pytest.approx(4.8, abs=0.2)
     assert left == sorted(left, reverse=True)
-    half = len(on_the_way) // 2
-    assert on_the_way[half].progress.seconds_left == pytest.approx(half * PERIOD, rel=0.5)
+    half = len(driving) // 2
+    assert driving[half].progress.seconds_left == pytest.approx(half * PERIOD, rel=0.5)
     assert (last.progress, last.outcome.code, last.outcome.reason) == (None, 0, "SUCCESS")
 
 

@@ -1,4 +1,4 @@
-"""The contract of recovery behaviours, and what each does on a tiny map."""
+"""The contract of recovery behaviours, and their effects on a small map."""
 
 import math
 
@@ -24,10 +24,10 @@ NEAR_XY, FAR_XY = (5.5, 5.0), (8.0, 5.0)
 HERE = Pose2(5.0, 5.0)
 
 
-class Bench:
-    """A robot that does at once what a behaviour says, on costmaps with a near and a far obstacle.
+class RecoveryBench:
+    """An ideal robot on costmaps with a near and a far obstacle.
 
-    ``slip``: the share of a turn that it does not make.
+    ``slip`` is the fraction of commanded rotation that it does not make.
     """
 
     def __init__(self, pose=HERE, slip=0.0, **footprint):
@@ -44,7 +44,7 @@ class Bench:
             costmap.update(pose)
 
     def run(self, settings, seconds=30.0):
-        """The velocities until the behaviour has ended."""
+        """Commands until the behaviour has finished."""
         behavior, commands = RECOVERIES.make(settings), []
         while len(commands) * PERIOD < seconds:
             command = behavior.step(
@@ -57,22 +57,22 @@ class Bench:
             commands.append(command)
             self.twist = Twist2(command.v, (1.0 - self.slip) * command.omega)
             self.pose = self.pose @ Pose2(0.0, 0.0, self.twist.omega * PERIOD)
-        raise AssertionError(f"not at an end after {seconds} s")
+        raise AssertionError(f"the behaviour has not finished after {seconds} s")
 
     def marked(self, xy):
-        """Whether an obstacle is left there, in the global and in the local costmap."""
+        """Whether there is an obstacle, in the global and in the local costmap."""
         return tuple(costmap.costs[costmap.window.cell_of(*xy)] == LETHAL for costmap in self.costmaps)
 
 
 @pytest.mark.parametrize("check", KITS["recovery_behavior"].checks, ids=lambda check: check.__name__)
 @pytest.mark.parametrize("member", RECOVERIES.members, ids=lambda member: member.short_name)
-def test_a_behaviour_keeps_its_contract(member, check):
+def test_a_behaviour_fulfils_the_contract(member, check):
     check(member)
 
 
 @pytest.mark.parametrize("member", RECOVERIES.members, ids=lambda member: member.short_name)
-def test_any_behaviour_ends_by_itself_and_does_not_leave_the_spot(member):
-    bench = Bench()
+def test_each_behaviour_finishes_without_driving(member):
+    bench = RecoveryBench()
     commands = bench.run(member.settings())
     assert all(command.v == 0.0 for command in commands)
     assert math.dist((bench.pose.x, bench.pose.y), (HERE.x, HERE.y)) == 0.0
@@ -87,16 +87,16 @@ def test_any_behaviour_ends_by_itself_and_does_not_leave_the_spot(member):
         ({"affected_maps": "local"}, (True, True), (True, False)),
     ],
 )
-def test_clearing_forgets_what_lies_outside_the_square_or_inside(values, near, far):
-    bench = Bench()
+def test_clearing_removes_obstacles_outside_or_inside_the_square(values, near, far):
+    bench = RecoveryBench()
     assert bench.marked(NEAR_XY) == bench.marked(FAR_XY) == (True, True)
     assert bench.run(ClearCostmapSettings(reset_distance=3.0, **values)) == []
     assert (bench.marked(NEAR_XY), bench.marked(FAR_XY)) == (near, far)
 
 
-def test_looking_around_is_a_full_turn_to_the_left_within_the_limits():
+def test_rotate_recovery_is_a_full_turn_to_the_left_within_the_limits():
     settings = RotateSettings(max_vel_theta=0.8, acc_lim_theta=2.0)
-    commands = Bench().run(settings)
+    commands = RecoveryBench().run(settings)
     turned = sum(command.omega * PERIOD for command in commands)
     assert turned == pytest.approx(2.0 * math.pi, abs=settings.yaw_goal_tolerance)
     rates = [0.0, *(command.omega for command in commands)]
@@ -105,23 +105,23 @@ def test_looking_around_is_a_full_turn_to_the_left_within_the_limits():
 
 
 @pytest.mark.parametrize("slip, turned", [(1.0, 0.0), (0.99, 0.0), (0.5, 2.0 * math.pi)])
-def test_a_robot_that_does_not_turn_is_not_told_to_for_ever(slip, turned):
-    bench = Bench(slip=slip)
+def test_rotate_recovery_ends_if_the_robot_does_not_turn(slip, turned):
+    bench = RecoveryBench(slip=slip)
     commands = bench.run(RotateSettings())
     assert bench.pose.yaw == pytest.approx(wrap(turned), abs=0.1)
     assert turned > 0.0 or len(commands) * PERIOD < 10.0
 
 
-def test_a_long_robot_that_would_touch_something_stops_turning():
+def test_rotate_recovery_stops_before_a_collision():
     corners = ((0.7, 0.1), (0.7, -0.1), (-0.1, -0.1), (-0.1, 0.1))
-    bench = Bench(Pose2(5.0, 5.0, -1.0), footprint=corners)
+    bench = RecoveryBench(Pose2(5.0, 5.0, -1.0), footprint=corners)
     bench.run(RotateSettings())
     assert -1.0 <= bench.pose.yaw < 0.0
     assert not bench.costmaps[1].collides(bench.pose)
 
 
-def test_going_on_slowly_forgets_what_is_near_and_limits_the_speed():
-    bench = Bench()
+def test_move_slow_clears_near_obstacles_and_limits_the_speed():
+    bench = RecoveryBench()
     settings = MoveSlowSettings(clearing_distance=1.0, limited_trans_speed=0.1, limited_distance=0.4)
     assert bench.run(settings) == []
     assert (bench.marked(NEAR_XY), bench.marked(FAR_XY)) == ((False, False), (True, True))
@@ -137,6 +137,6 @@ def test_going_on_slowly_forgets_what_is_near_and_limits_the_speed():
         (MoveSlowSettings, {"limited_distance": -1.0}, "limited_distance must be at least 0"),
     ],
 )
-def test_senseless_settings_are_refused(kind, values, reason):
+def test_invalid_settings_are_refused(kind, values, reason):
     with pytest.raises(SettingsError, match=reason):
         kind(**values)

@@ -1,4 +1,4 @@
-"""A plugin is not blamed for a machine that is busy with other things."""
+"""A plugin does not fail because the machine is busy with other processes."""
 
 import os
 import subprocess
@@ -19,7 +19,7 @@ SPINNING = "while True: pass"
 
 @pytest.fixture
 def crowded():
-    """One processor alone, with five others that never let go of it."""
+    """Run on one processor together with five busy processes."""
     before = os.sched_getaffinity(0)
     os.sched_setaffinity(0, {min(before)})
     others = [subprocess.Popen([sys.executable, "-c", SPINNING]) for _ in range(5)]
@@ -31,31 +31,31 @@ def crowded():
 
 
 def work(seconds):
-    """Of a processor's time."""
+    """Use so many seconds of processor time."""
     end = time.thread_time() + seconds
     while time.thread_time() < end:
         pass
 
 
-def test_a_plugin_that_has_to_wait_for_a_processor_is_not_blamed(crowded):
+def test_a_plugin_that_waits_for_a_processor_does_not_fail(crowded):
     guard = PluginGuard("busy/Planner", lambda: work, PluginFailed)
     began = time.perf_counter()
     for seconds in (0.0, 0.5):
         with guard.watch() as plugin:
             plugin(seconds)
-    assert time.perf_counter() - began > MAX_CALL_SECONDS, "it was kept waiting"
+    assert time.perf_counter() - began > MAX_CALL_SECONDS, "the thread had to wait"
 
 
-def test_one_that_sleeps_is():
+def test_a_plugin_that_sleeps_fails():
     guard = PluginGuard("idle/Planner", lambda: time.sleep, PluginFailed)
     with guard.watch() as plugin:
         plugin(0.0)
-    told = r"idle/Planner took 1\.\d s for an answer"
-    with pytest.raises(PluginFailed, match=told), guard.watch() as plugin:
+    message = r"idle/Planner took 1\.\d s for an answer"
+    with pytest.raises(PluginFailed, match=message), guard.watch() as plugin:
         plugin(MAX_CALL_SECONDS + 0.1)
 
 
-def test_each_thread_has_its_own_time(crowded):
+def test_each_thread_is_measured_separately(crowded):
     waited = []
 
     def measure():
@@ -71,8 +71,8 @@ def test_each_thread_has_its_own_time(crowded):
     assert min(waited) > 0.05
 
 
-def test_a_forked_process_has_its_own_time(crowded):
-    """It begins to wait at nothing, however long its parent has waited just before."""
+def test_a_forked_process_is_measured_separately(crowded):
+    """Its waiting time starts at zero, however long its parent has waited."""
     work(0.3)
     Stopwatch()
     reader, writer = os.pipe()
@@ -83,10 +83,10 @@ def test_a_forked_process_has_its_own_time(crowded):
         os.write(writer, repr(watch.seconds() / (time.perf_counter() - began)).encode())
         os._exit(0)
     os.waitpid(child, 0)
-    assert float(os.read(reader, 99)) < 0.9, "what it waited itself does not count"
+    assert float(os.read(reader, 99)) < 0.9, "its own waiting time is subtracted"
 
 
-def test_where_the_system_tells_nothing_of_it_time_passes_all_the_same(monkeypatch):
+def test_without_scheduler_statistics_wall_time_is_measured(monkeypatch):
     monkeypatch.setattr(thread_time, "STATISTICS", Path("/nowhere/schedstat"))
     monkeypatch.setattr(thread_time, "_thread", thread_time._Thread())
     watch = Stopwatch()

@@ -1,4 +1,4 @@
-"""Zones: the robot stays out, comes out again, and slows down."""
+"""Zones: the robot stays out of keep-out zones, leaves them, and slows down in speed zones."""
 
 import math
 
@@ -24,7 +24,7 @@ def drive(zones, start, goal):
         speeds.append(robot.twist.v)
         if decision.status.is_final:
             return robot, decision, poses, speeds
-    raise AssertionError("not there after 90 s")
+    raise AssertionError("the goal has not ended after 90 s")
 
 
 def test_the_whole_robot_stays_out_of_a_keep_out_zone():
@@ -35,7 +35,7 @@ def test_the_whole_robot_stays_out_of_a_keep_out_zone():
     assert min(pose.y for pose in within if 2.4 < pose.x < 3.6) > 2.6 + 0.178
 
 
-def test_a_zone_that_is_switched_off_does_not_count():
+def test_a_zone_that_is_switched_off_has_no_effect():
     zones, goal = Zones([MIDDLE]), Pose2(5.4, 1.5)
     zones.enable("middle", False)
     robot, decision, poses, _ = drive(zones, Pose2(0.6, 1.5), goal)
@@ -43,7 +43,7 @@ def test_a_zone_that_is_switched_off_does_not_count():
     assert max(pose.y for pose in poses) < 2.0
 
 
-def test_a_robot_inside_a_keep_out_zone_gets_out_of_it():
+def test_a_robot_in_a_keep_out_zone_leaves_it():
     goal = Pose2(5.4, 1.5)
     robot, decision, poses, _ = drive(Zones([MIDDLE]), Pose2(3.2, 1.0, math.pi), goal)
     assert_arrived(robot, [decision], goal)
@@ -52,7 +52,7 @@ def test_a_robot_inside_a_keep_out_zone_gets_out_of_it():
     assert not is_inside[-1]
 
 
-def test_a_zone_switched_on_around_a_moving_robot_is_left():
+def test_a_robot_leaves_a_zone_that_is_switched_on_around_it():
     zones, grid, goal = Zones([MIDDLE]), room(6.0, 4.0), Pose2(5.4, 1.5)
     zones.enable("middle", False)
     robot, navigator = Robot(grid, Pose2(0.6, 1.5)), Navigator(SETTINGS, grid, zones)
@@ -63,7 +63,7 @@ def test_a_zone_switched_on_around_a_moving_robot_is_left():
     assert_arrived(robot, drive_to_end(robot, navigator), goal)
 
 
-def test_a_goal_in_a_keep_out_zone_is_given_up_at_once_by_its_name():
+def test_a_goal_in_a_keep_out_zone_is_aborted_at_once_with_the_name_of_the_zone():
     _, decision, _, _ = drive(Zones([MIDDLE]), Pose2(0.6, 1.5), Pose2(3.0, 1.0))
     assert decision.status is Status.ABORTED
     assert decision.text.endswith(
@@ -98,7 +98,7 @@ CORNERS = "corners: [[0, 0], [1, 0], [1, 1]]"
         (f"a: {{kind: keep_out, enabled: 3, {CORNERS}}}", "a.enabled must be true or false"),
     ],
 )
-def test_a_bad_file_of_zones_is_refused_by_file_line_and_key(tmp_path, text, reason):
+def test_an_invalid_file_of_zones_is_refused_with_file_line_and_key(tmp_path, text, reason):
     path = tmp_path / "zones.yaml"
     path.write_text(text)
     with pytest.raises(SettingsError, match=reason) as error:

@@ -1,6 +1,6 @@
 """Plugins of the navigator's extension points, by their official names.
 
-An extension point is a contract in a module of its own -- ``control/local_planner.py``,
+An extension point is a contract module -- ``control/local_planner.py``,
 ``planning/global_planner.py``, ``recovery/behavior.py``, ``costmap/layer.py`` -- and a registry of the
 plugins in this package. Everything else follows from a plugin's entry: how its parameters are read, which of
 them dynamic_reconfigure offers, and their listing in ``config/move_base_lite.yaml``.

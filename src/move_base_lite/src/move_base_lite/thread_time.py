@@ -32,7 +32,7 @@ _thread = _Thread()
 
 
 def _reset() -> None:
-    """Discard the statistics of the parent in a forked process, which has threads of its own."""
+    """Discard the statistics of the parent in a forked process, whose threads are others."""
     global _thread
     _thread = _Thread()
 

@@ -20,7 +20,7 @@ from move_base_lite.navigator.decision import (
     with_reason,
 )
 from move_base_lite.navigator.goal_execution import GoalExecution, RobotState
-from move_base_lite.navigator.state_machine import GoalAborted, GoalReached, step
+from move_base_lite.navigator.state_machine import GoalAborted, GoalSucceeded, step
 from move_base_lite.navigator.zones import Zones
 from move_base_lite.planning import Potential
 from planar import OccupancyGrid, Pose2, Scan, Twist2
@@ -90,7 +90,7 @@ class Navigator:
             distance = self.settings.move_base.oscillation_distance
             self._execution.update(state, distance, components.active_command, components.period)
             decision = step(self._execution, state, components)
-        except GoalReached:
+        except GoalSucceeded:
             outcome = self._outcome(now, SUCCEEDED_OUTCOME, "SUCCESS", SUCCESS_TEXT)
             return self._end(Status.SUCCEEDED, SUCCESS_TEXT, outcome)
         except GoalAborted as end:

@@ -36,7 +36,7 @@ SWITCH_COST_RATIO = 0.8
 OFF_PLAN_DISTANCE = 0.3
 
 
-class GoalReached(Exception):  # noqa: N818  -- not an error
+class GoalSucceeded(Exception):  # noqa: N818  -- not an error
     """The robot stands at its goal."""
 
 
@@ -57,7 +57,7 @@ def step(execution: GoalExecution, state: RobotState, components: NavigatorCompo
     """Run one control period.
 
     Raises:
-        GoalReached: If the robot stands at the goal.
+        GoalSucceeded: If the robot stands at the goal.
         GoalAborted: If sensor data stay away, or all recovery behaviours have been tried.
     """
     topic = components.costmaps.stale_source(state.stamp)
@@ -127,7 +127,7 @@ def _control(execution: GoalExecution, state: RobotState, components: NavigatorC
     """Follow the plan; start recovery if it makes no progress."""
     settings, controller, now = components.settings.move_base, components.controller, state.stamp
     if controller.is_goal_reached(state.base_in_map, state.twist):
-        raise GoalReached
+        raise GoalSucceeded
     if now >= execution.next_plan - TIME_TOLERANCE:
         _plan(execution, state, components, has_plan=True)
     plan_xy = execution.path_xy if execution.planned_at == now else None

@@ -235,11 +235,11 @@ class _Sensor:
         if base_at_stamp is None:
             return None
         sensor_in_base = self._mountings[frame]
-        observation = self._sighting(message, sensor_in_base)
+        observation = self._convert(message, sensor_in_base)
         moved = base_in_odom.inverse() @ base_at_stamp
         return replace(observation, sensor_in_base=moved @ observation.sensor_in_base)
 
-    def _sighting(self, message, sensor_in_base: np.ndarray) -> Observation:
+    def _convert(self, message, sensor_in_base: np.ndarray) -> Observation:
         x, y, height = sensor_in_base[:3, 3]
         yaw = float(np.arctan2(sensor_in_base[1, 0], sensor_in_base[0, 0]))
         if self._source.data_type == "LaserScan":

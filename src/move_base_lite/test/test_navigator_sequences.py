@@ -1,4 +1,4 @@
-"""The Navigator under goals, cancels, other maps, silence and clocks that jump, in any order."""
+"""The Navigator under random sequences of goals, cancellations, maps, missing scans and jumps of time."""
 
 from dataclasses import replace
 
@@ -21,11 +21,11 @@ GOALS = {
     "off the map": Pose2(50.0, 0.0),
 }
 MOST_TICKS = 200
-HOPELESS = ("in a wall", "off the map")
+UNREACHABLE = ("in a wall", "off the map")
 
 
-class NavigatorHistories(RuleBasedStateMachine):
-    """What the node does with a Navigator; ``goal``: the name of the one that is pursued."""
+class NavigatorSequences(RuleBasedStateMachine):
+    """Calls of the node on a Navigator; ``goal`` is the name of the goal in progress."""
 
     @initialize()
     def begin(self):
@@ -46,25 +46,25 @@ class NavigatorHistories(RuleBasedStateMachine):
         return decision
 
     def check_end(self, decision):
-        """A goal ends once, the robot being told to stop, and nothing is left of it."""
+        """A goal ends once, with a stop command."""
         assert decision.command == Twist2()
-        assert self.goal not in HOPELESS or decision.status is not Status.SUCCEEDED
+        assert self.goal not in UNREACHABLE or decision.status is not Status.SUCCEEDED
         assert decision.outcome.seconds >= 0.0
         assert decision.outcome.recoveries >= 0
         self.goal = None
 
     @rule(name=st.sampled_from(sorted(GOALS)))
-    def a_goal_comes(self, name):
+    def set_goal(self, name):
         self.navigator.set_goal(GOALS[name])
         self.goal = name
 
     @rule(count=st.sampled_from((1, 1, 3, 10)))
-    def time_passes(self, count):
+    def tick_several_times(self, count):
         for _ in range(count):
             self.tick()
 
     @rule()
-    def somebody_cancels(self):
+    def cancel(self):
         decision = self.navigator.cancel(self.robot.now)
         if self.goal is None:
             assert decision.status is Status.IDLE
@@ -74,47 +74,47 @@ class NavigatorHistories(RuleBasedStateMachine):
             self.check_end(decision)
 
     @rule(is_walled=st.booleans())
-    def another_map_comes(self, is_walled):
+    def set_map(self, is_walled):
         self.navigator.set_map(WALLED if is_walled else ROOM)
 
     @rule()
-    def settings_change(self):
+    def change_settings(self):
         now = self.navigator.settings
         slower = replace(now.controller, max_vel_x=0.7 - now.controller.max_vel_x)
         self.navigator.update_settings(replace(now, controller=slower))
 
     @rule()
-    def somebody_clears(self):
+    def clear_costmaps(self):
         self.navigator.clear_costmaps()
 
     @rule()
-    def the_laser_falls_silent_or_speaks_again(self):
+    def switch_laser(self):
         self.robot.has_laser = not self.robot.has_laser
 
     @rule(seconds=st.sampled_from((5.0, 1e6)))
-    def the_clock_jumps(self, seconds):
+    def jump_forward(self, seconds):
         self.robot.now += seconds
         self.tick()
 
     @precondition(lambda self: self.robot.now > 5.0)
     @rule()
-    def the_clock_is_set_back(self):
-        """The node has the Navigator forget then."""
+    def jump_back(self):
+        """The node resets the Navigator then."""
         self.robot.now -= 5.0
         self.navigator.reset()
         self.goal = None
 
     @invariant()
-    def there_is_one_goal_or_none(self):
+    def is_active_while_there_is_a_goal(self):
         assert self.navigator.is_active is (self.goal is not None)
 
     def teardown(self):
-        """Whatever was, a goal comes to its end when nothing more goes wrong."""
+        """Whatever happened, a goal is reached when there are no more faults."""
         if not hasattr(self, "robot"):
             return
         self.robot.has_laser = True
         self.navigator.set_map(ROOM)
-        self.a_goal_comes("near" if self.robot.pose.distance_to(START) < 0.2 else "here")
+        self.set_goal("near" if self.robot.pose.distance_to(START) < 0.2 else "here")
         for _ in range(MOST_TICKS):
             decision = self.tick()
             if self.goal is None:
@@ -122,7 +122,7 @@ class NavigatorHistories(RuleBasedStateMachine):
         assert decision.status is Status.SUCCEEDED, decision
 
 
-NavigatorHistories.TestCase.settings = settings(
+NavigatorSequences.TestCase.settings = settings(
     max_examples=25, stateful_step_count=20, deadline=None, derandomize=True, database=None
 )
-TestNavigatorHistories = NavigatorHistories.TestCase
+TestNavigatorSequences = NavigatorSequences.TestCase

@@ -1,6 +1,6 @@
-"""A stage for tests of move_base: clock, map, transforms and sensors of a robot without physics.
+"""A kinematic robot for tests of move_base: publishes clock, map, transforms and sensors.
 
-Time goes on as fast as the node under test keeps up, and whatever a test switches off is silent.
+Time advances as fast as the node under test keeps up. A test can switch off each output.
 """
 
 import math
@@ -37,9 +37,9 @@ ROOMS = """
 """
 CELL_METRES, RESOLUTION = 0.4, 0.05
 STEP, LEAD = 0.05, 0.1
-# Simulated seconds a second, at most: what a message takes on its way counts in simulated time.
-SPEED = 5.0
-# Wall seconds after which time goes on without the node.
+# Highest real-time factor: the delivery of messages takes simulated time.
+MAX_REAL_TIME_FACTOR = 5.0
+# Wall seconds after which time advances without the node.
 PATIENCE = 1.0
 BEAMS, RANGE_MAX, STEPS_PER_SCAN = 360, 8.0, 2
 
@@ -51,8 +51,8 @@ def rooms() -> OccupancyGrid:
     return OccupancyGrid(np.kron(cells, np.ones((times, times), np.int8)), RESOLUTION)
 
 
-class Stage:
-    """The robot starts at (1, 2) in the map, and odometry there too."""
+class FakeRobot:
+    """The robot starts at (1, 2) in the map and in the odometry frame."""
 
     def __init__(self):
         self.grid = rooms()
@@ -63,7 +63,7 @@ class Stage:
         self.spoil = lambda ranges: ranges
         self.cloud_xyz = None
         self.now, self._steps = 100.0, 0
-        self._reached, self._told = 0.0, threading.Event()
+        self._reached, self._has_progress = 0.0, threading.Event()
         self._clock = rospy.Publisher("/clock", Clock, queue_size=10, tcp_nodelay=True)
         self._tf = rospy.Publisher("/tf", TFMessage, queue_size=10, tcp_nodelay=True)
         self._odom = rospy.Publisher("odom", Odometry, queue_size=10, tcp_nodelay=True)
@@ -87,9 +87,9 @@ class Stage:
             self._publish()
             until = time.monotonic() + PATIENCE
             while self._reached < self.now - LEAD and time.monotonic() < until:
-                self._told.wait(0.02)
-                self._told.clear()
-            time.sleep(STEP / SPEED)
+                self._has_progress.wait(0.02)
+                self._has_progress.clear()
+            time.sleep(STEP / MAX_REAL_TIME_FACTOR)
 
     def _move(self):
         self.now += STEP
@@ -133,4 +133,4 @@ class Stage:
 
     def _on_progress(self, message):
         self._reached = message.stamp.to_sec()
-        self._told.set()
+        self._has_progress.set()
