@@ -10,6 +10,7 @@ import json
 import subprocess
 import sys
 from dataclasses import dataclass
+from datetime import date
 from pathlib import Path
 from typing import Any, Dict, List, Optional, Sequence
 
@@ -20,21 +21,25 @@ from home_service.headless.fault_comparison import START
 from home_service.judging.verdict import ARRIVAL_TOLERANCE
 from planar import write_atomically
 from sim_bridge.faults import KINDS, default_strength
+from supervision.versions import provenance
 
 # Time limit of a run, and additional time to end and to judge [wall s].
 RUN_SECONDS, SPARE_SECONDS = 240.0, 60.0
 CLEAN = "none"
 PAGE = """# Faults over ROS
 
-The kinds of [faults](../reference/faults.md), from {start:g} s on, in the whole graph of nodes:
-`./scripts/home_service.sh --faults FILE --timeout {limit:g}` over {runs} seeds from {seed}. Made by
-`python3 tests/benchmarks/faults_over_ros.py --seed {seed} --runs {runs}
---table docs/reports/faults_over_ros.md`.
+Look up what each kind of [fault](../reference/faults.md) does to the mission as a graph of nodes:
+`./scripts/home_service.sh --faults FILE --timeout {limit:g}`, the fault from {start:g} s on, {runs} seeds
+from {seed}.
 
-A verdict is false if the robot reports a delivery that did not happen, or the other way round; a run hangs
-if the script has not ended {spare:g} s after the time limit. *Left* are processes, sockets and files.
+{provenance}
+* Command: `python3 tests/benchmarks/faults_over_ros.py --seed {seed} --runs {runs} --table
+  docs/reports/faults_over_ros.md`
 
-| fault | succeeded | false verdicts | hung | left | simulated s | why not |
+A verdict is false if the robot reports a delivery that did not take place, or the reverse; a run hangs if
+the script has not ended {spare:g} s after the time limit. *Left* are processes, sockets and files.
+
+| fault | succeeded | false verdicts | hung | left | simulated s | reason |
 | --- | --- | --- | --- | --- | --- | --- |
 {rows}
 """
@@ -148,7 +153,9 @@ def _write(table: Optional[Path], rows: Sequence[Row], options: argparse.Namespa
         return
     limits = {"start": START, "limit": RUN_SECONDS, "spare": SPARE_SECONDS}
     lines = "\n".join(row.line for row in rows)
-    text = PAGE.format(rows=lines, runs=options.runs, seed=options.seed, **limits)
+    text = PAGE.format(
+        rows=lines, runs=options.runs, seed=options.seed, provenance=provenance(date.today()), **limits
+    )
     write_atomically(table, text.encode("utf-8"))
 
 

@@ -14,11 +14,14 @@ import sys
 import time
 from contextlib import suppress
 from dataclasses import dataclass
+from datetime import date
 from pathlib import Path
 from typing import Dict, List, Optional, Tuple
 
 import psutil
 from soak import ROOT, RUN_SECONDS, RUNS, Graph, Leftovers
+
+from supervision.versions import provenance
 
 # Nodes of map_home.sh; the others run in a mission.
 MAPPERS = ("slam_gmapping", "explore")
@@ -39,21 +42,21 @@ FATAL = ("sim_bridge", "rosmaster", "roslaunch")
 SPEED, DRIVING_SECONDS = 4, 2.0
 PAGE = """# Killed nodes
 
-Result of `./scripts/home_service.sh --mission map/mission.yaml --speed {speed}`, for slam_gmapping and
-explore of `./scripts/map_home.sh --speed {speed}`, when one of its processes is killed (`kill -9`) while
-the robot drives: wall seconds until the restarted node publishes again and until the run ends, and the
-number of processes, sockets and temporary files that are left. Made by
-`python3 tests/benchmarks/killed_nodes.py --seed {seed} --table docs/reports/killed_nodes.md`.
+Look up what happens to a mission when one of its processes is killed with `kill -9` while the robot drives:
+wall seconds until the restarted node publishes again and until the run ends, and the number of processes,
+sockets and temporary files that are left.
+
+{provenance}
+* Command: `python3 tests/benchmarks/killed_nodes.py --seed {seed} --table docs/reports/killed_nodes.md`,
+  which runs `./scripts/home_service.sh --mission map/mission.yaml --speed {speed}`, and
+  `./scripts/map_home.sh --speed {speed}` for slam_gmapping and explore
 
 | killed | publishes again, s | ended after, s | exit code | reason of the run | left |
 | --- | --- | --- | --- | --- | --- |
 {rows}
 
-A restarted node resumes from its checkpoint, a parameter or a file that a parameter names: amcl from its
-particles, slam_gmapping from its pose graph of at most five seconds ago, explore from its start pose,
-pick_objects from the progress of its deliveries. rosout only collects logs. A node is restarted up to three
-times. When the simulator, the master or roslaunch dies, the run ends. Other tests:
-[troubled graphs](troubled_graphs.md), [faults](faults.md).
+A restarted node continues from its [checkpoint](../reference/missions.md#after-a-crash), at most three
+times. The run ends when the simulator, the master or roslaunch dies.
 """
 
 
@@ -168,10 +171,15 @@ def main() -> int:
         print(results[name].row, flush=True)
     if options.table:
         rows = "\n".join(result.row for result in results.values())
-        options.table.write_text(PAGE.format(speed=SPEED, seed=options.seed, rows=rows))
+        options.table.write_text(report(options.seed, rows))
     survivors = [name for name in WORK if name in results]
     is_ok = all(results[name].code == 0 and results[name].back is not None for name in survivors)
     return int(not is_ok or any(result.left for result in results.values()))
+
+
+def report(seed: int, rows: str) -> str:
+    """Return the page of the report, with date, commit and machine of now."""
+    return PAGE.format(speed=SPEED, seed=seed, rows=rows, provenance=provenance(date.today()))
 
 
 if __name__ == "__main__":

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import time
 from dataclasses import dataclass
+from datetime import date
 from functools import partial
 from pathlib import Path
 from typing import Callable, Dict, List
@@ -29,6 +30,8 @@ from killed_nodes import (
 )
 from soak import Graph, Leftovers
 
+from supervision.versions import provenance
+
 STILL_SECONDS = 5.0
 CALL_SECONDS = 10.0
 BUSY_SECONDS, BUSY_EACH = 15.0, 4
@@ -36,10 +39,14 @@ STORM_GOALS, STORM_SECONDS = 2000, 2.0
 CANCELS, CANCELS_APART = 100, 0.05
 PAGE = """# Troubled graphs
 
-Result of `./scripts/home_service.sh --mission map/mission.yaml --speed {speed}` when its processes, its
-time or its topics are disturbed while the robot drives: wall seconds until the run ends, and the number of
-processes, sockets and temporary files that are left. Made by
-`python3 tests/benchmarks/troubled_graphs.py --seed {seed} --table docs/reports/troubled_graphs.md`.
+Look up what happens to a mission when its processes, its time or its topics are disturbed while the robot
+drives: wall seconds until the run ends, and the number of processes, sockets and temporary files that are
+left.
+
+{provenance}
+* Command: `python3 tests/benchmarks/troubled_graphs.py --seed {seed} --table
+  docs/reports/troubled_graphs.md`, which runs `./scripts/home_service.sh --mission map/mission.yaml --speed
+  {speed}`
 
 | trouble | disturbance | ended after, s | exit code | reason of the run | left |
 | --- | --- | --- | --- | --- | --- |
@@ -195,8 +202,13 @@ def main() -> int:
         print(outcomes[-1].row, flush=True)
     if options.table:
         rows = "\n".join(outcome.row for outcome in outcomes)
-        options.table.write_text(PAGE.format(speed=SPEED, seed=options.seed, rows=rows))
+        options.table.write_text(report(options.seed, rows))
     return int(not all(outcome.is_ok for outcome in outcomes))
+
+
+def report(seed: int, rows: str) -> str:
+    """Return the page of the report, with date, commit and machine of now."""
+    return PAGE.format(speed=SPEED, seed=seed, rows=rows, provenance=provenance(date.today()))
 
 
 if __name__ == "__main__":

@@ -1,8 +1,10 @@
 """What a run folder tells of the software and the machine that made it."""
 
+from datetime import date
+
 import pytest
 
-from supervision.versions import processor, versions
+from supervision.versions import processor, provenance, versions
 
 X86 = """processor\t: 0
 vendor_id\t: GenuineIntel
@@ -45,3 +47,9 @@ def test_a_machine_that_does_not_tell_its_processor_is_unknown(tmp_path, content
 
 def test_versions_name_the_processor():
     assert versions()["processor"] == processor()
+
+
+def test_the_provenance_of_a_report_has_its_date_and_machine():
+    lines = provenance(date(2026, 11, 29)).splitlines()
+    assert lines[0].startswith("* Date and commit: 2026-11-29, ")
+    assert lines[1].startswith("* Machine: ")

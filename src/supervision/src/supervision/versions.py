@@ -1,8 +1,10 @@
 """Which software made a run, and on which processor."""
 
+import os
 import platform
 import subprocess
 import xml.etree.ElementTree as ElementTree
+from datetime import date
 from importlib import metadata
 from pathlib import Path
 from typing import Dict
@@ -49,3 +51,13 @@ def project_version() -> str:
     """The version in this package.xml, as in those of the project's other packages."""
     package_xml = Path(__file__).resolve().parents[2] / "package.xml"
     return ElementTree.parse(package_xml).findtext("version", "unknown")
+
+
+def provenance(today: date) -> str:
+    """Return date, commit and machine of a measurement, as items of a Markdown list."""
+    command = ["git", "-C", str(Path(__file__).parent), "rev-parse", "--short", "HEAD"]
+    git = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, check=False)
+    commit = git.stdout.strip() or f"version {project_version()}"
+    return (
+        f"* Date and commit: {today.isoformat()}, {commit}\n* Machine: {processor()}, {os.cpu_count()} cores"
+    )

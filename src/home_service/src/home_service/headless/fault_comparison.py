@@ -1,24 +1,29 @@
 """Runs with a fault beside the same runs without it."""
 
 from dataclasses import dataclass
+from datetime import date
 from typing import Dict, Sequence
 
 from home_service.headless.mission import EpisodeConditions, EpisodeResult, HeadlessMission, parcel_for
 from home_service.inputs import MissionInputs
 from home_service.judging.verdict import collision
 from sim_bridge.faults import KINDS, Fault, default_strength
+from supervision.versions import provenance
 
 # Simulated seconds: on the way to the object.
 START = 8.0
 HEAD = """# Faults
 
-What becomes of the errand when something goes wrong {start:g} s after the start and stays so: each kind of
-fault beside its clean twin of the same seed, in one process, over {seeds}. Made by
-`./scripts/rehearse.sh --seed {seed} --runs {runs} --timeout {timeout:g} --each-fault docs/reports/faults.md`.
+Look up what each kind of fault does to the home-service mission: the fault starts at {start:g} s and stays,
+in one process, over {seeds}, beside a run of the same seed without it.
 
-A verdict is false if the robot says that it has delivered and has not, or the other way round. *Lost* is the
-simulated time beyond the clean twin's. *Named* is the sensor that the robot did not trust, and why.
-Where 0.0 s are lost to a thing in the way, it did not stand in the way of what came after.
+{provenance}
+* Command: `./scripts/rehearse.sh --seed {seed} --runs {runs} --timeout {timeout:g} --each-fault
+  docs/reports/faults.md`
+
+A verdict is false if the robot reports a delivery that did not take place, or the reverse. *Lost* is the
+additional simulated time. *Named* is the sensor that navigation did not trust, with the reason. Where an
+obstacle costs 0.0 s, it was not in the way.
 
 | fault | what goes wrong | strength | succeeded | touched | false verdicts | lost, s | named, or the end |
 | --- | --- | --- | --- | --- | --- | --- | --- |
@@ -116,7 +121,14 @@ def fault_report(rows: Sequence[FaultComparisonRow], seeds: Sequence[int], timeo
     """The table, as a page of the documentation; how it was made: ``seeds`` in a row, simulated seconds."""
     runs = len(seeds)
     told = "one seed" if runs == 1 else f"{runs} seeds"
-    head = HEAD.format(start=START, seeds=told, seed=seeds[0], runs=runs, timeout=timeout)
+    head = HEAD.format(
+        start=START,
+        seeds=told,
+        seed=seeds[0],
+        runs=runs,
+        timeout=timeout,
+        provenance=provenance(date.today()),
+    )
     return head + "".join(row.table_row for row in rows) + TAIL
 
 
