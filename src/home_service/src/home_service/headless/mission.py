@@ -1,7 +1,8 @@
 """Headless simulation of a mission: the cores of the nodes in one process, without ROS, stepped in lock-step.
 
 The result depends on nothing but the seed, bit for bit. Delays are those of the nodes
-(docs/logical_time.md): what one component computes, the others use one control period later.
+(docs/explanation/deterministic_runs.md): what one component computes, the others use one control period
+later.
 """
 
 import hashlib

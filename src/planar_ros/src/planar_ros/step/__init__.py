@@ -1,4 +1,4 @@
-"""Logical time: messages are taken in, and take effect, at moments (docs/logical_time.md)."""
+"""Logical time: messages take effect at logical instants (docs/explanation/deterministic_runs.md)."""
 
 from planar.deprecation import deprecated_names
 from planar_ros.step.step import LockstepClient, has_synchronised_publisher

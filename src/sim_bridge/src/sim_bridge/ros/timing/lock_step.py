@@ -1,7 +1,7 @@
 """Lock-step with the simulator, the simulator's side: ticks, and the delivery of messages between them.
 
-Protocol (docs/logical_time.md): the simulator publishes each tick on ``/simulation/moment``, and every
-synchronised node answers on ``/simulation/answer`` when it has finished its work. The nodes' side is
+Protocol (docs/explanation/deterministic_runs.md): the simulator publishes each tick on
+``/simulation/moment``, and every synchronised node answers on ``/simulation/answer`` when it has finished its work. The nodes' side is
 ``planar_ros.step``; which tick is due decides ``sim_bridge.lock_step``.
 """
 
