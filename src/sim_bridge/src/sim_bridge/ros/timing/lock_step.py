@@ -1,8 +1,8 @@
 """Lock-step with the simulator, the simulator's side: ticks, and the delivery of messages between them.
 
 Protocol (docs/explanation/deterministic_runs.md): the simulator publishes each tick on
-``/simulation/moment``, and every synchronised node answers on ``/simulation/answer`` when it has finished its work. The nodes' side is
-``planar_ros.step``; which tick is due decides ``sim_bridge.lock_step``.
+``/simulation/moment``, and every synchronised node answers on ``/simulation/answer`` when it has finished
+its work. The nodes' side is ``planar_ros.step``; which tick is due decides ``sim_bridge.lock_step``.
 """
 
 import time
