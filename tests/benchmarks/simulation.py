@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Measures how much faster than real time the simulation runs, without ROS, on one core.
+"""Measure the real-time factor of the simulation without ROS, on one core.
 
 python3 tests/benchmarks/simulation.py [--seconds 60] [--json FILE] [WORLD ...]
 """
@@ -24,7 +24,7 @@ HEADING = "world                robot              bodies  load s start s  x rea
 
 @dataclass(frozen=True)
 class Measurement:
-    """Seconds of wall and CPU time; the factors are simulated seconds per second of either."""
+    """Times [s], and simulated seconds per second of wall and CPU time."""
 
     world: str
     robot: str
@@ -40,7 +40,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("worlds", nargs="*", metavar="WORLD", default=[str(ROOT / "map" / "home.world")])
     parser.add_argument("--seconds", type=float, default=60.0, help="simulated time (default: 60)")
-    parser.add_argument("--json", type=Path, metavar="FILE", help="writes the figures there too")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="also write the figures to this file")
     options = parser.parse_args()
     try:
         measured = [
@@ -83,7 +83,7 @@ def measure(path: str, robot: RobotProfile, seconds: float) -> Measurement:
 
 
 def _started(world: World, robot: RobotProfile) -> Simulation:
-    """A simulation that has made its first sweep, so that nothing is compiled while it is measured."""
+    """Return a simulation that has taken its first scan, so that nothing is compiled while it is measured."""
     simulation = Simulation(world, robot)
     for _ in range(10):
         simulation.step()

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Measures how fast a simulator node runs with subscribers to its clock, odometry and scans.
+"""Measure the real-time factor of a simulator node with subscribers to its clock, odometry and scans.
 
-Any that drives a robot by cmd_vel, one after the other, so that they can be compared:
+Works with any node that drives a robot by cmd_vel, so that simulators can be compared:
 
     python3 tests/benchmarks/simulator_over_ros.py
     python3 tests/benchmarks/simulator_over_ros.py --scan base_scan -- rosrun stage_ros stageros -g home.world
@@ -31,7 +31,7 @@ SCANS_BEFORE, START_SECONDS = 5, 60.0
 
 @dataclass(frozen=True)
 class Measurement:
-    """``cpu_ms``: CPU time for a simulated second; scans and odometry are counted per simulated second."""
+    """Figures of a run; ``cpu_ms``: CPU time per simulated second; rates are per simulated second."""
 
     real_time_factor: float
     cpu_ms: float
@@ -41,7 +41,7 @@ class Measurement:
 
 
 class Meter:
-    """Drives the robot in a circle, and counts what comes."""
+    """Drives the robot in a circle and counts the messages it receives."""
 
     def __init__(self, scan_topic: str):
         self._scans = self._odometry = 0
@@ -53,7 +53,7 @@ class Meter:
         self._commands = rospy.Publisher("cmd_vel", Twist, queue_size=1)
 
     def wait_for_scans(self) -> None:
-        """Raises SystemExit if none come."""
+        """Wait for the first scans. Raises SystemExit if there are none."""
         until = time.monotonic() + START_SECONDS
         while self._scans < SCANS_BEFORE:
             if time.monotonic() > until:
@@ -61,7 +61,7 @@ class Meter:
             time.sleep(0.1)
 
     def measure(self, node: Node, seconds: float) -> Measurement:
-        """What happens in so many seconds of wall time."""
+        """Measure for some seconds of wall time."""
         before, cpu, began = self._counts(), node.cpu_seconds(), time.monotonic()
         command = Twist()
         command.linear.x, command.angular.z = SPEED, TURN

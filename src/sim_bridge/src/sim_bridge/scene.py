@@ -36,8 +36,23 @@ MAX_START_SHIFT, MAX_START_MOVES = 0.15, 10
 class Scene:
     """A world that is stepped, with its robots. The same seed and calls give the same results, bit for bit.
 
-    ``models``, ``joints`` and ``forces`` give access to their states, ``view`` to what sensors see of them.
     Methods that take the name of a model, link or robot raise UnknownEntityError if there is none.
+
+    Args:
+        world: The world.
+        settings: Rates and noise.
+        seed: Seed of all noise.
+        wrappers: Wrap the sensors and drives of the robots.
+
+    Attributes:
+        models: Poses, velocities and masses of models and links.
+        joints: Joints of the models.
+        forces: Wrenches and efforts that act for a given time.
+        view: What sensors see of the scene.
+        lights: Lights by name.
+        trajectory_player: Moves bodies along scripted trajectories.
+        crowd: Pedestrians.
+        doors: Doors.
     """
 
     def __init__(
@@ -70,7 +85,14 @@ class Scene:
         return self._engine.gravity
 
     def step(self, commands: Mapping[str, Twist2] = {}) -> Dict[str, StepResult]:
-        """Advance by one period of the odometry; ``commands`` by robot hold until the drive's time-out."""
+        """Advance the simulation by one period of the odometry.
+
+        Args:
+            commands: Velocity commands by robot; each holds until the drive's time-out.
+
+        Returns:
+            Sensor readings and ground truth of each robot at the end of the step.
+        """
         for name, command in commands.items():
             self.robot(name).command(command)
         robots, stamp, has_forces = self._robots.values(), self.stamp, self.forces.are_pending
@@ -100,12 +122,21 @@ class Scene:
     def add_robot(
         self, name: str, profile: RobotProfile, base_in_world: Pose2 = Pose2(), z: float = 0.0
     ) -> Tuple[str, ...]:
-        """Put a robot on the floor at, or below, the height ``z`` [m].
+        """Put a robot on the floor.
 
         A robot that would slightly overlap an obstacle is moved out of it, as contact forces do in Gazebo.
 
-        Returns the names of the links that it was moved out of. Raises WorldError if it cannot stand there or
-        the name is taken.
+        Args:
+            name: Name of the robot's model.
+            profile: Parts, drive and sensors.
+            base_in_world: Start pose of the base.
+            z: Height at or below which the floor is searched [m].
+
+        Returns:
+            Names of the links that the robot was moved out of.
+
+        Raises:
+            WorldError: The robot cannot stand there, or the name is taken.
         """
         self.models.check_free([name])
         where = f"({base_in_world.x:g}, {base_in_world.y:g})"
@@ -125,6 +156,7 @@ class Scene:
         raise WorldError(f"the robot would start at {where}, inside {', '.join(resolved.links)}")
 
     def robot(self, name: str) -> Robot:
+        """Return a robot by name."""
         if name not in self._robots:
             raise UnknownEntityError(f"no robot named {name!r}{hint(name, self._robots)}")
         return self._robots[name]
@@ -137,6 +169,7 @@ class Scene:
         self.models.add(bodies)
 
     def remove_model(self, name: str) -> None:
+        """Remove a model or robot."""
         for link in self.models.remove(name):
             self.forces.clear_link_wrenches(link)
         for joint in self.joints.remove_model(name):
@@ -199,10 +232,15 @@ class Scene:
         self._marked_state = self._engine.save_state()
 
     def rewind(self, seed: int, starts: Mapping[str, Pose2] = {}) -> None:
-        """Restart at time 0 from the marked state, with the noise of ``seed``; much faster than ``reset``.
+        """Restart at time 0 from the marked state; much faster than ``reset``.
 
-        ``starts``: start poses of robots that differ from the marked ones; they must be free and on the same
-        floor. No model may have been added or removed since the mark.
+        The same seed, starts and calls give the same results. No model may have been added or removed since
+        the mark.
+
+        Args:
+            seed: Seed of all noise from now on.
+            starts: Start poses of robots, by name, that differ from the marked ones. They must be free and on
+                the same floor.
         """
         self._engine.restore_state(self._marked_state)
         self._seed, self._stamp_at_rate, self._physics_steps = seed, 0.0, 0

@@ -64,6 +64,11 @@ class Engine:
     Args:
         rate: Physics steps per second.
         gravity: Downward acceleration [m/s^2].
+
+    Attributes:
+        joints: Movable joints by name.
+        attachments: Temporary fixed constraints.
+        collision_queries: Contacts and floor heights.
     """
 
     def __init__(self, rate: int, gravity: float):
@@ -85,6 +90,7 @@ class Engine:
         self.set_rate(rate)
 
     def close(self) -> None:
+        """Free the engine."""
         self._bullet.disconnect()
 
     def step(self, count: int = 1) -> None:
@@ -129,10 +135,16 @@ class Engine:
     def add(
         self, bodies: Sequence[Body], joints: Sequence[Joint] = (), placement: np.ndarray = IDENTITY
     ) -> None:
-        """Add bodies, whose poses are in the frame ``placement`` (4, 4), and the joints between them.
+        """Add bodies and the joints between them.
 
-        Raises WorldError, and leaves the engine unchanged, if a name exists already or occurs twice, or if a
-        multibody would have too many parts.
+        Args:
+            bodies: The bodies; their poses are in the frame of ``placement``.
+            joints: Joints between them, or to the world.
+            placement: Pose (4, 4) in the world of the frame of the bodies' poses.
+
+        Raises:
+            WorldError: A name exists already or occurs twice, or a multibody would have too many parts. The
+                engine is unchanged then.
         """
         for name, count in Counter(body.name for body in bodies).items():
             if self.has_link(name):

@@ -32,7 +32,11 @@ def build_multibody(
         tree: The bodies and the joints between them.
         placement: Pose (4, 4) in the world of the frame in which the bodies' poses are given.
 
-    Returns Bullet's unique id of the multibody. Raises WorldError if the tree has too many parts.
+    Returns:
+        Bullet's unique id of the multibody.
+
+    Raises:
+        WorldError: The tree has more parts than a Bullet multibody can have.
     """
     root = tree.bodies[0]
     centre = root.inertia.pose_in_body
