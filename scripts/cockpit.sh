@@ -1,16 +1,16 @@
 #!/usr/bin/env bash
 # Usage: ./scripts/cockpit.sh [options] [RECORDING...]
 #
-# Shows a running ROS graph in the browser, and drives it: what rviz, Gazebo's window and rqt show, in one page.
-# Prints the page's URL, with the token without which nothing is shown. The graph is that of ROS_MASTER_URI or,
-# if nobody answers there, the newest one on this machine. Ctrl-C closes the page; the graph goes on.
-# With bags, or folders of them or of runs: plays what was recorded, from wherever one likes, at any pace.
-# Exit code: 0 success, 1 failure or no result.json, 2 bad input, 130 interrupted.
+# Show a running ROS graph in the browser and control it: the functions of rviz, Gazebo's window and rqt in one page.
+# Prints the URL of the page with its access token. The graph is that of ROS_MASTER_URI or, without a master there,
+# the newest one on this machine. Ctrl-C closes the page; the graph continues.
+# With bags, folders of bags or run folders: plays the recording from any position at any speed.
+# Exit code: 0 success, 1 failure or no result.json, 2 invalid input, 130 interrupted.
 #
 #   --web-port [ADDRESS:]PORT
-#                    where the page is served (default: a free port of 127.0.0.1)
+#                    address of the page (default: a free port of 127.0.0.1)
 #   --tool NAME      open this tool at once (docs/how_to/watch_in_the_browser.md lists them)
-#   --output FOLDER  where the run folder of a recording's show is made (default: ./runs)
+#   --output FOLDER  folder in which the run folder of a replay is created (default: ./runs)
 #   --help           this text
 
 # shellcheck source=scripts/setup.sh

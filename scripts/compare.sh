@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # Usage: ./scripts/compare.sh A B [options]
 #
-# Puts the folders of two runs side by side: a table in the terminal, and a page with both maps and charts.
-# Sets everything up first if need be. Exit code: 0 success, 1 failure, 2 bad input, 130 interrupted.
+# Compare two run folders: a table in the terminal, and a page with both maps and charts.
+# Performs the set-up if needed. Exit code: 0 success, 1 failure, 2 invalid input, 130 interrupted.
 #
-#   --page FILE      where the page goes (default: compare.html in B)
+#   --page FILE      file of the page (default: compare.html in B)
 #   --help           this text
 
 # shellcheck source=scripts/setup.sh

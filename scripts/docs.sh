@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # Usage: ./scripts/docs.sh [--serve]
 #
-# Builds the documentation as a site in build/site, with the API of the cores from their docstrings and a search.
-# Sets everything up first if need be, with mkdocs; to look at the site takes no network.
-# Exit code: 0 success, 1 a warning or failure, 2 bad usage, 130 interrupted.
+# Build the documentation as a site in build/site, with the API from the docstrings and a search.
+# Performs the set-up if needed, with mkdocs; the site itself needs no network.
+# Exit code: 0 success, 1 a warning or failure, 2 invalid usage, 130 interrupted.
 #
-#   --serve  then shows it at http://127.0.0.1:8800 until Ctrl-C (the search does not work in files)
+#   --serve  then serve it at http://127.0.0.1:8800 until Ctrl-C (the search does not work in files)
 #   --help   this text
 
 # shellcheck source=scripts/setup.sh

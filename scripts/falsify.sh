@@ -1,21 +1,20 @@
 #!/usr/bin/env bash
 # Usage: ./scripts/falsify.sh SCENARIO [options]
 #
-# Searches for what breaks the robot in a scenario (docs/reference/scenarios.md): places of boxes, people and their ways,
-# faults, noise, seeds, each case near to the hardest so far. The first that fails is shrunk to the least that
-# still fails, and written as a scenario of its own. Ctrl-C loses nothing; the next start goes on. Sets
-# everything up first if need be, with Optuna and Dask.
-# Exit code: 0 nothing found, 1 a failure found, 2 bad input, 130 interrupted.
+# Search for a failure in a scenario (docs/reference/scenarios.md): places of boxes, pedestrians and their goals, faults,
+# noise, seeds, each case near the hardest so far. The first failing case is reduced to a minimal one and written as
+# a scenario. Ctrl-C loses nothing; the next start continues. Performs the set-up if needed, with Optuna and Dask.
+# Exit code: 0 nothing found, 1 a failure found, 2 invalid input, 130 interrupted.
 #
-#   --trials N         cases that are tried at most (default: 200)
-#   --boxes N          boxes at most (default: 4)
-#   --people N         people at most (default: 2)
-#   --faults N         faults at most (default: 1)
-#   --seed N           of the search (default: 0)
+#   --trials N         maximum number of cases (default: 200)
+#   --boxes N          maximum number of boxes (default: 4)
+#   --people N         maximum number of pedestrians (default: 2)
+#   --faults N         maximum number of faults (default: 1)
+#   --seed N           seed of the search (default: 0)
 #   --planner NAME     local planner (default: that of the scenario)
-#   --workers N        processes (default: one for each core)
-#   --scheduler ADDRESS  Dask's, instead of processes here: tcp://HOST:8786
-#   --output FOLDER    what is found is kept here (default: runs/falsify)
+#   --workers N        number of processes (default: one for each core)
+#   --scheduler ADDRESS  Dask scheduler instead of local processes: tcp://HOST:8786
+#   --output FOLDER    folder of results (default: runs/falsify)
 #   --help             this text
 
 # shellcheck source=scripts/setup.sh

@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
 # Usage: ./scripts/fuzz.sh [options]
 #
-# Gives every reader of files thousands of broken ones, and keeps those that it does not refuse in words, or not
-# within 5 s and 1 GB (docs/how_to/fuzz.md). Sets everything up first if need be, with Atheris.
-# Exit code: 0 nothing was found, 1 something was, 2 bad input, 130 interrupted.
+# Give every reader of files thousands of malformed ones, and store those that it does not refuse with an error
+# message within 5 s and 1 GB (docs/how_to/fuzz.md). Performs the set-up if needed, with Atheris.
+# Exit code: 0 nothing found, 1 failures found, 2 invalid input, 130 interrupted.
 #
 #   --minutes MINUTES  for all readers together (default: 5)
-#   --cases CASES      for each reader, if there is the time (default: no end)
-#   --reader NAME...   only of these, like world or map_image (default: all)
-#   --seed SEED        of all chance (default: 0)
-#   --output OUTPUT    what is found is kept here (default: build/fuzz)
+#   --cases CASES      maximum number of files for each reader (default: unlimited)
+#   --reader NAME...   only these, such as world or map_image (default: all)
+#   --seed SEED        seed (default: 0)
+#   --output OUTPUT    folder of results (default: build/fuzz)
 #   --help             this text
 
 # shellcheck source=scripts/setup.sh

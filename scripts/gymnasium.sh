@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # Usage: ./scripts/gymnasium.sh ENVIRONMENT [options]
 #
-# Plays episodes of a Gymnasium environment (docs/how_to/train_a_policy.md), like PointGoal-v0, and says how they went.
-# Sets everything up first if need be, with gymnasium. Exit code: 0 success, 2 bad input, 130 interrupted.
+# Run episodes of a Gymnasium environment (docs/how_to/train_a_policy.md), such as PointGoal-v0, and print the results.
+# Performs the set-up if needed, with gymnasium. Exit code: 0 success, 2 invalid input, 130 interrupted.
 #
-#   --policy NAME    module/function: gets an observation, gives an action (default: actions by chance)
-#   --arguments YAML of the environment, like "{scenario: homes}"
-#   --seed N         of all chance (default: 0)
-#   --episodes N     how many (default: 1)
+#   --policy NAME    module/function: gets an observation, gives an action (default: random actions)
+#   --arguments YAML of the environment, such as "{scenario: homes}"
+#   --seed N         seed (default: 0)
+#   --episodes N     number (default: 1)
 #   --gif FILE       an animation of them
 #   --help           this text
 

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # Usage: ./scripts/new_plugin.sh NAME KIND [options]
 #
-# Lays out a catkin package in src/ with a class of your own that is found by its name, and its test.
+# Create a catkin package in src/ with a plugin class and its test.
 # KIND: local_planner, global_planner, recovery_behavior, costmap_layer, sensor_model, motion_model, scan_matcher, fault
 # or world_generator (docs/how_to/write_a_plugin.md).
-# Sets everything up first if need be. Exit code: 0 success, 2 bad input, 130 interrupted.
+# Performs the set-up if needed. Exit code: 0 success, 2 invalid input, 130 interrupted.
 #
-#   --source FOLDER  where packages are (default: src)
+#   --source FOLDER  folder of the package (default: src)
 #   --help           this text
 
 # shellcheck source=scripts/setup.sh

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # Usage: ./scripts/release.sh [--output FOLDER]
 #
-# Makes the archive of the version in CITATION.cff from the commit that is checked out, the same to the last byte
-# whenever and wherever it is made, and prints its SHA-256. Refuses a tree with changes, and versions that differ
-# between CITATION.cff, CHANGELOG.md, the package.xml files and the Dockerfile. To publish: git tag -a vVERSION, then this.
-# Exit code: 0 success, 1 failure, 2 bad input.
+# Make the archive of the version in CITATION.cff from the current commit, reproducible byte for byte, and print its
+# SHA-256. Refuses a tree with changes, and versions that differ between CITATION.cff, CHANGELOG.md, the package.xml
+# files and the Dockerfile. To publish: git tag -a vVERSION, then this script.
+# Exit code: 0 success, 1 failure, 2 invalid input.
 #
-#   --output FOLDER  where the archive goes (default: ./dist)
+#   --output FOLDER  folder of the archive (default: ./dist)
 #   --help           this text
 
 # shellcheck source=scripts/lib.sh

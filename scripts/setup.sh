@@ -1,18 +1,17 @@
 #!/usr/bin/env bash
 # Usage: ./scripts/setup.sh [--dev] [--projects] [--rviz] [--web] [--laboratory] [--gymnasium] [--packages]
 #
-# Installs what the workspace needs and is missing: Debian packages (as root or with sudo), Python packages
-# in .venv, the catkin build in build/ and devel/. The other scripts do this themselves when they start.
-# Does nothing when all is there, and goes on where an interrupted set-up ended. Logs: logs/setup/.
-# If a package in src/ does not build, the last build that went well stays in use.
+# Install what the workspace lacks: Debian packages (as root or with sudo), Python packages in .venv, the catkin build in
+# build/ and devel/. The other scripts do this when they start. Does nothing if everything is up to date, and continues
+# an interrupted set-up. Logs: logs/setup/. If a package in src/ does not build, the last successful build stays in use.
 #
-#   --dev        also what the checks in .ci/run and the benchmarks need: ruff, mypy, chromium, the extras ...
-#   --projects   also what run_project.sh needs: libraries for projects in C++
+#   --dev        also for the checks in .ci/run and the benchmarks: ruff, mypy, chromium, the extras ...
+#   --projects   also for run_project.sh: libraries for projects in C++
 #   --rviz       also rviz
 #   --web        also the cockpit in the browser
-#   --laboratory also what evaluate.sh needs: Dask, statsmodels, pyarrow, Optuna
-#   --gymnasium  also what the environments need: gymnasium
-#   --packages   only the Debian and Python packages, as for a cached layer of an image
+#   --laboratory also for evaluate.sh: Dask, statsmodels, pyarrow, Optuna
+#   --gymnasium  also for the environments: gymnasium
+#   --packages   only the Debian and Python packages, for example for a cached layer of an image
 #   --help       this text
 
 scripts=$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")

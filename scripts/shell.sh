@@ -1,8 +1,8 @@
 # shellcheck shell=bash
 # Usage: source scripts/shell.sh
 #
-# Makes an interactive bash one of the workspace, after its set-up: rosnode, rostopic, rosrun, roslaunch ... with
-# completion, roscd, rosls, rosed; the Python of .venv; ROS_MASTER_URI and ROS_IP, if they are not set, on this machine.
+# Turn an interactive bash into a shell of the workspace, after its set-up: rosnode, rostopic, rosrun, roslaunch ... with
+# completion, roscd, rosls, rosed; the Python of .venv; ROS_MASTER_URI and ROS_IP on this machine, if they are not set.
 
 if [[ ${BASH_SOURCE[0]} == "$0" ]]; then
     printf 'error: this is not a command: source %s\n' "$0" >&2

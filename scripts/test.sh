@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # Usage: ./scripts/test.sh [unit|ros|all] [NAME...] [--jobs N]
 #
-# Runs the tests: unit tests (pytest, no ROS), ROS tests (rostest: nodes and whole missions), or both, the
-# default; with NAMEs only the test files whose paths contain one. Sets everything up first if need be; tests of what
-# only ./scripts/setup.sh --dev installs (a browser, Dask ...) are left out without it.
-# Logs and JUnit reports: logs/tests/. Exit code: 0 all passed, 1 failure, 2 bad usage, 130 interrupted.
+# Run the tests: unit tests (pytest, no ROS), ROS tests (rostest: nodes and whole missions), or both, the default; with
+# NAMEs only the test files whose paths contain one. Performs the set-up if needed; tests of what only
+# ./scripts/setup.sh --dev installs (a browser, Dask ...) are skipped without it.
+# Logs and JUnit reports: logs/tests/. Exit code: 0 all passed, 1 failure, 2 invalid usage, 130 interrupted.
 #
-#   --jobs N   so many files of ROS tests at once (default: one for each core, at most 4)
+#   --jobs N   number of ROS test files run at the same time (default: one for each core, at most 4)
 #   --help     this text
 
 # shellcheck source=scripts/setup.sh
