@@ -204,6 +204,13 @@ without_warnings() { # LOG; they tell the files that led to them, as errors do
 
 kernel_inputs() { (cd "$root" && { grep -rl --include='*.py' numba src || true; } | sort | xargs -r stat -c '%n %Y %s' | sha256sum); }
 
+# A cache that an earlier version has compiled may name classes that no longer exist: numba cannot read it then.
 warm_kernels() {
+    compile_kernels && return
+    find "$root/src" -path '*/__pycache__/*' \( -name '*.nbi' -o -name '*.nbc' \) -delete
+    compile_kernels
+}
+
+compile_kernels() {
     env -u PYTHONHOME PYTHONPATH="$(printf '%s:' "$root"/src/*/src)" "$root/.venv/bin/python3" -m home_service.warm
 }
