@@ -1,4 +1,4 @@
-"""Lets pytest import every package from the source tree, built or not, and what tests share."""
+"""Let pytest import all packages from the source tree, and the shared helpers of tests."""
 
 import sys
 from importlib.util import find_spec
@@ -8,7 +8,7 @@ ROOT = Path(__file__).resolve().parent
 sys.path[:0] = [str(path) for path in sorted(ROOT.glob("src/**/src")) if path.is_dir()]
 sys.path[:0] = [str(ROOT / "tests/runner"), str(ROOT / "tests/repository")]
 sys.path[1:1] = [str(path) for path in sorted(ROOT.glob("src/*/test")) if path.is_dir()]
-# Hypothesis, for tests of histories, comes with the set-up for development alone.
+# Only the development set-up installs Hypothesis.
 collect_ignore_glob = [] if find_spec("hypothesis") else ["src/*/test/test_*_histories.py"]
 
 
@@ -19,7 +19,7 @@ def pytest_addoption(parser):
 
 
 def pytest_ignore_collect(collection_path, config):
-    """Unlike a file that is named, one that is chosen may still be left out by the conftest.py beside it."""
+    """Unlike a named file, a selected one may still be ignored by the conftest.py beside it."""
     names = config.getoption("only")
     if not names or collection_path.is_dir():
         return None

@@ -161,30 +161,31 @@ def recovery(player: Player, commands: Dict[str, str], place: Place, runs: int, 
 
 def _recover(player: Player, kind: str, drives, deadline: int, rng) -> Optional[float]:
     """Seconds until the position is right, and stays so; None if that takes longer than the deadline."""
-    sightings = _piece(drives, rng, deadline * SCANS_PER_SECOND)
+    observations = _piece(drives, rng, deadline * SCANS_PER_SECOND)
     if kind == "global":
-        player.show(sightings[0])
+        player.show(observations[0])
         player.localize_globally()
     elif kind == "kidnapped":
         before = _piece(drives, rng, 5 * SCANS_PER_SECOND)
         player.set_pose(before[0].base_in_map)
-        for sighting in before:
-            player.show(sighting)
+        for observation in before:
+            player.show(observation)
         # Odometry does not notice.
-        jump = before[-1].base_in_odom @ sightings[0].base_in_odom.inverse()
-        sightings = [Observation(s.scan, jump @ s.base_in_odom, s.base_in_map) for s in sightings]
+        jump = before[-1].base_in_odom @ observations[0].base_in_odom.inverse()
+        observations = [Observation(s.scan, jump @ s.base_in_odom, s.base_in_map) for s in observations]
     else:
         bearing, side = rng.uniform(-np.pi, np.pi), rng.choice((-1.0, 1.0))
         off = Pose2(np.cos(bearing), np.sin(bearing), side * np.radians(30.0))
-        player.show(sightings[0])
-        truth = sightings[0].base_in_map
+        player.show(observations[0])
+        truth = observations[0].base_in_map
         player.set_pose(Pose2(truth.x + off.x, truth.y + off.y, truth.yaw + off.yaw))
     right = 0
-    for i, sighting in enumerate(sightings):
-        odom_in_map = player.show(sighting)
+    for i, observation in enumerate(observations):
+        odom_in_map = player.show(observation)
         is_right = (
             odom_in_map is not None
-            and (odom_in_map @ sighting.base_in_odom).distance_to(sighting.base_in_map) < RECOVERED_WITHIN
+            and (odom_in_map @ observation.base_in_odom).distance_to(observation.base_in_map)
+            < RECOVERED_WITHIN
         )
         right = right + 1 if is_right else 0
         if right == RECOVERED_SCANS:
@@ -208,8 +209,8 @@ def memory(player: Player, commands: Dict[str, str], drive: List[Observation]) -
         node = player.start_node([command], TURTLEBOT)
         try:
             player.wake(drive[0])
-            for sighting in drive:
-                player.show(sighting)
+            for observation in drive:
+                player.show(observation)
             print(f"{name:10} {node.resident_megabytes():5.0f}")
         finally:
             node.close()
@@ -224,14 +225,14 @@ def _measure(
         player.wake(drive[0])
         player.set_pose(drive[0].base_in_map)
         cpu_before, errors = node.cpu_seconds(), []
-        for sighting in drive:
+        for observation in drive:
             shown = time.monotonic()
-            odom_in_map = player.show(sighting)
+            odom_in_map = player.show(observation)
             if odom_in_map is None:
                 continue
             if waiting is not None:
                 waiting.append(time.monotonic() - shown)
-            found, truth = odom_in_map @ sighting.base_in_odom, sighting.base_in_map
+            found, truth = odom_in_map @ observation.base_in_odom, observation.base_in_map
             errors.append((found.distance_to(truth), abs(wrap(found.yaw - truth.yaw))))
         return np.array(errors), (node.cpu_seconds() - cpu_before) / len(drive)
     finally:

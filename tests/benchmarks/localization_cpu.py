@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """CPU time of amcl_lite, and of the official amcl where it is installed, over bags played at real time.
 
-All work at the same time, each with a master, a map server and a player of its own. The bags hold odometry
+All run at the same time, each with its own master, map server and player. The bags hold odometry
 at 50 Hz and scans at 10 Hz, and the clock comes at 50 Hz, all as from sim_bridge. What a node takes to start,
 once, is listed beside, as the mean over all starts.
 
@@ -99,12 +99,12 @@ def main():
                     starts[name] += stage.start_seconds
                     bags[name] += taken[name]
                 count += 1
-                _tell(f"{place.name} {noise} {preset}", taken)
-    _tell("all bags", bags)
-    _tell("a start", {name: total / count for name, total in starts.items()})
+                _print_times(f"{place.name} {noise} {preset}", taken)
+    _print_times("all bags", bags)
+    _print_times("a start", {name: total / count for name, total in starts.items()})
 
 
-def _tell(what, seconds_of_nodes):
+def _print_times(what, seconds_of_nodes):
     print(f"{what:35}", *(f"{seconds:10.2f}" for seconds in seconds_of_nodes.values()), flush=True)
 
 

@@ -55,14 +55,14 @@ def main():
         )
 
 
-def _judged(place: Place, sightings: List[Observation], rng) -> List[Tuple[float, bool]]:
+def _judged(place: Place, observations: List[Observation], rng) -> List[Tuple[float, bool]]:
     """The quality of poses, and whether they are right."""
     field = likelihood_field(place.grid, SETTINGS.sigma_hit, SETTINGS.likelihood_max_distance)
     free_space, rows = FreeSpace(place.grid), []
-    for sighting in sightings:
-        truth = sighting.base_in_map
+    for observation in observations:
+        truth = observation.base_in_map
         for share in CUT_SHORT:
-            scan = _cut_short(sighting.scan, share, rng)
+            scan = _cut_short(observation.scan, share, rng)
             beams, ends_xy = evenly_spaced_beams(scan, SETTINGS), all_beams(scan, SETTINGS).ends_xy
             anywhere = Pose2.from_array(free_space.draw(1, rng)[0])
             direction = rng.uniform(-np.pi, np.pi)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A recorded run, localized anew from its bag, is as good as it was; a killed run leaves a closed bag."""
+"""A recorded run is localized again from its bag as accurately; a killed run leaves a closed bag."""
 
 import json
 import math
@@ -29,7 +29,7 @@ class BagsTest(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
 
-    def test_a_recorded_run_is_localized_anew_as_well(self):
+    def test_a_recorded_run_is_localized_again_as_accurately(self):
         live = self._run("test_navigation.sh", "--goals", "1.5 0.3 0", "--record", "inputs", "--seed", "106")
         bag = self.folder / "live/bag/inputs_0.bag"
         with rosbag.Bag(str(bag)) as recorded:

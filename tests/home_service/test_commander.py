@@ -36,7 +36,7 @@ class CommanderTest(unittest.TestCase):
         with self.assertRaisesRegex(CommanderError, "no command was given yet"):
             lonely.outcome()
 
-    def test_2_a_turn_and_a_way_back_are_as_long_as_they_should_be(self):
+    def test_2_a_rotation_and_a_reverse_drive_have_the_requested_length(self):
         start = self.referee.truth
         self.robot.spin(math.pi / 2.0)
         self._assert_result(Result.SUCCEEDED)
@@ -80,7 +80,7 @@ class CommanderTest(unittest.TestCase):
         with self.assertRaisesRegex(CommanderError, "no waypoints"):
             self.robot.follow_waypoints([])
 
-    def test_6_costmaps_pose_and_map_are_set_or_the_reason_is_told(self):
+    def test_6_costmaps_pose_and_map_are_set_or_the_reason_is_reported(self):
         self.robot.clear_costmaps()
         here = self.robot.pose
         self.robot.set_initial_pose(here.x, here.y, here.yaw)

@@ -26,7 +26,7 @@ from planar import Pose2
 from planar_ros.calls.actions import KILLED_TEXT, goal_is_over, server_is_ready
 from planar_ros.messages.conversion import pose2_from_msg, pose2_to_msg
 
-WALL_DEADLINE = 400.0  # of a machine that has other things to do
+WALL_DEADLINE = 400.0  # on a busy machine
 MISSION = """\
 places:
   hall: {x: 1.2, y: 0.2}
@@ -143,8 +143,8 @@ class MissionsTest(unittest.TestCase):
         self._wait("its goal to be given up", lambda: GIVEN_UP & _statuses(goals.messages))
         self._wait("a stop", lambda: _speed(odometry.next()) < 0.01)
         self._wait("the end of the mission", lambda: goal_is_over(self.client))
-        told = self.client.get_state(), self.client.get_goal_status_text()
-        self.assertEqual(told, (GoalStatus.ABORTED, KILLED_TEXT))
+        outcome = self.client.get_state(), self.client.get_goal_status_text()
+        self.assertEqual(outcome, (GoalStatus.ABORTED, KILLED_TEXT))
 
     def _assert_body(self, letter):
         """It stood in front of one place, rode on the robot, and stands in front of the other."""

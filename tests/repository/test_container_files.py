@@ -15,7 +15,7 @@ OPTION = re.compile(r"--[a-z][a-z-]*")
 
 
 def dockerfile():
-    """The instructions, each on a line of its own."""
+    """Return the instructions, one per line."""
     text = re.sub(r"^\s*#.*\n", "", DOCKERFILE.read_text(), flags=re.MULTILINE)
     return text.replace("\\\n", " ").splitlines()
 

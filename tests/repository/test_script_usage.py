@@ -1,4 +1,4 @@
-"""The scripts tell their options before anything is installed; these tests hold that text to the parser."""
+"""The usage texts of the scripts list the options of their commands."""
 
 import re
 import subprocess
@@ -24,7 +24,7 @@ OPTION = re.compile(r"--[a-z][a-z-]*")
     ("folder", "command"),
     [(folder, name) for folder in FOLDERS.values() for name in sorted(folder.names())],
 )
-def test_a_script_tells_the_options_that_its_command_takes(folder, command, capsys):
+def test_a_script_lists_the_options_of_its_command(folder, command, capsys):
     with pytest.raises(SystemExit):
         parse([command, "--help"], folder)
     usage = subprocess.run(
@@ -33,7 +33,7 @@ def test_a_script_tells_the_options_that_its_command_takes(folder, command, caps
     assert set(OPTION.findall(usage)) == set(OPTION.findall(capsys.readouterr().out))
 
 
-def test_a_script_that_can_write_no_temporary_files_says_so_in_a_line(tmp_path):
+def test_a_script_that_cannot_write_temporary_files_fails_with_one_line(tmp_path):
     for limit, folder, reason in (("unlimited", tmp_path / "gone", "made"), ("1", tmp_path, "written")):
         command = f"trap '' XFSZ; ulimit -f {limit}; TMPDIR={folder} exec {SCRIPTS}/doctor.sh"
         result = subprocess.run(["bash", "-c", command], capture_output=True, text=True)
@@ -51,6 +51,6 @@ def test_the_set_up_refuses_an_option_that_it_does_not_know():
 
 
 @pytest.mark.parametrize(("kind", "folder"), list(FOLDERS.items())[1:])
-def test_a_script_of_a_package_of_its_own_is_known_as_one(kind, folder):
+def test_a_script_of_another_package_is_registered(kind, folder):
     listed = re.search(rf"{kind}=\((.*?)\)", (SCRIPTS / "lib.sh").read_text())
     assert listed and sorted(listed[1].split()) == sorted(folder.names())

@@ -388,7 +388,7 @@ def test_other_installations_are_waited_for_or_finished(tmp_path, monkeypatch, a
     assert result.returncode == 0, result.stdout + result.stderr
 
 
-def test_a_proxy_that_is_down_is_told_without_its_password(tmp_path, monkeypatch):
+def test_a_proxy_that_is_down_is_reported_without_its_password(tmp_path, monkeypatch):
     monkeypatch.setenv("https_proxy", "http://me:secret@127.0.0.1:9")
     result = in_workspace(
         tmp_path, "echo 'ProxyError(Cannot connect to proxy.)' >log; give_up 'pip failed' log"

@@ -158,8 +158,8 @@ def main() -> int:
         print(*short, *names, sep="\n")
     for use, count in sorted(counts.items(), key=lambda item: -item[1]):
         print(f"{count:6d}  retired words for: {use}")
-    told = rules["text"][0]["use"]
-    print(f"{len(hits):6d}  retired words in all, {counts[told]} of them tell, tells, told, telling")
+    first = rules["text"][0]["use"]
+    print(f"{len(hits):6d}  retired words in all, {counts[first]} of them tell, tells, told, telling")
     print(f"{len(names):6d}  retired names of classes and functions")
     print(f"{len(duplicates):6d}  class names used more than once")
     print(f"{len(short):6d}  modules under {SHORT_MODULE} lines")

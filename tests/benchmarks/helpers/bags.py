@@ -34,7 +34,7 @@ class Laser:
 
 def write_bag(
     path: str,
-    sightings: List[Observation],
+    observations: List[Observation],
     scan_topic: str = "scan",
     grid: Optional[OccupancyGrid] = None,
     lasers: Sequence[Laser] = (),
@@ -45,27 +45,29 @@ def write_bag(
     If ``grid`` is given, ``lasers`` take the place of the drive's own, and measure that map.
     """
     rng = np.random.default_rng(0)
-    own = Laser("laser", sightings[0].scan.laser_in_base)
+    own = Laser("laser", observations[0].scan.laser_in_base)
     with rosbag.Bag(str(path), "w") as bag:
         mountings = TFMessage([_mounting(laser, base_frame) for laser in (lasers or [own])])
         bag.write("/tf_static", mountings, time_of(START))
-        for sighting in sightings:
-            stamp = time_of(START + sighting.scan.stamp)
+        for observation in observations:
+            stamp = time_of(START + observation.scan.stamp)
             for then, base_in_odom in (
-                *sighting.odometry_before,
-                (sighting.scan.stamp, sighting.base_in_odom),
+                *observation.odometry_before,
+                (observation.scan.stamp, observation.base_in_odom),
             ):
                 odom = transform_msg(base_in_odom, "odom", base_frame, time_of(START + then))
                 bag.write("/tf", TFMessage([odom]), time_of(START + then))
             truth = Odometry()
             truth.header.stamp, truth.header.frame_id = stamp, "world"
-            truth.pose.pose = pose2_to_msg(sighting.base_in_map)
+            truth.pose.pose = pose2_to_msg(observation.base_in_map)
             bag.write("/base_pose_ground_truth", truth, stamp)
             if grid is None:
-                bag.write("/" + scan_topic, _own_scan(sighting, own, stamp), stamp)
+                bag.write("/" + scan_topic, _own_scan(observation, own, stamp), stamp)
                 continue
             for laser in lasers:
-                bag.write("/" + scan_topic, _measured(grid, sighting.base_in_map, laser, stamp, rng), stamp)
+                bag.write(
+                    "/" + scan_topic, _measured(grid, observation.base_in_map, laser, stamp, rng), stamp
+                )
 
 
 def _mounting(laser: Laser, base_frame: str) -> TransformStamped:
@@ -76,8 +78,8 @@ def _mounting(laser: Laser, base_frame: str) -> TransformStamped:
     return transform
 
 
-def _own_scan(sighting: Observation, laser: Laser, stamp) -> LaserScan:
-    scan = sighting.scan
+def _own_scan(observation: Observation, laser: Laser, stamp) -> LaserScan:
+    scan = observation.scan
     message = LaserScan(angle_min=scan.angle_min, angle_increment=scan.angle_increment)
     message.range_min, message.range_max = scan.range_min, scan.range_max
     return _completed(message, scan.ranges, laser, stamp)

@@ -123,9 +123,9 @@ def drive(
     robot: str = "turtlebot_lidar",
     start: Optional[Pose2] = None,
 ) -> List[Observation]:
-    """Drives for some simulated seconds as ``driver.command`` says; the map frame is the world frame."""
+    """Drive for some simulated seconds by ``driver.command``; the map frame is the world frame."""
     simulation = Simulation(world, robot_named(robot), settings, seed, start or Pose2())
-    sightings, before, command = [], [], None
+    observations, before, command = [], [], None
     try:
         for _ in range(round(seconds / simulation.step_seconds)):
             seen = simulation.step(command)
@@ -133,11 +133,11 @@ def drive(
             if seen.scan is None:
                 before.append((seen.stamp, base_in_odom))
             else:
-                sightings.append(Observation(seen.scan, base_in_odom, seen.base_in_world, tuple(before)))
+                observations.append(Observation(seen.scan, base_in_odom, seen.base_in_world, tuple(before)))
                 before, command = [], driver.command(seen.base_in_world)
     finally:
         simulation.close()
-    return sightings
+    return observations
 
 
 def random_drive(world: World, grid: OccupancyGrid, seed: int, seconds: float, **others) -> List[Observation]:

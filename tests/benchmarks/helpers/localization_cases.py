@@ -44,7 +44,7 @@ def places() -> List[Place]:
 
 
 def installed_nodes() -> Dict[str, str]:
-    """The programs of the nodes to compare; says so if the official one is not installed."""
+    """Return the programs of the nodes to compare; warn if the official one is not installed."""
     lite = {"amcl_lite": str(ROOT / "src" / "amcl_lite" / "nodes" / "amcl_lite")}
     found = subprocess.run(["catkin_find", "amcl", "amcl"], stdout=subprocess.PIPE, check=False)
     # This workspace has a package amcl too, an alias of amcl_lite.

@@ -36,7 +36,7 @@ START_SECONDS = 120.0
 
 
 class Master:
-    """A ROS master of its own, with this process as a node of it; simulated time."""
+    """Start a ROS master with simulated time and make this process a node of it."""
 
     def __init__(self, port: int):
         os.environ["ROS_MASTER_URI"] = f"http://127.0.0.1:{port}"
@@ -86,23 +86,23 @@ class Player:
             time.sleep(0.05)
         return node
 
-    def wake(self, sighting: Observation) -> None:
+    def wake(self, observation: Observation) -> None:
         """Shows the node a scan until it answers for the first time."""
         deadline = time.monotonic() + START_SECONDS
         while time.monotonic() < deadline:
-            if self.show(sighting, patience=0.5) is not None:
+            if self.show(observation, patience=0.5) is not None:
                 return
         raise RuntimeError("the node does not answer")
 
-    def show(self, sighting: Observation, patience: float = ANSWER_SECONDS) -> Optional[Pose2]:
-        """Publishes one sighting, 0.1 s after the one before; returns odom in map, None if no answer came."""
+    def show(self, observation: Observation, patience: float = ANSWER_SECONDS) -> Optional[Pose2]:
+        """Publish an observation, 0.1 s after the last one; return odom in map, or None without an answer."""
         self._now += 0.1
         stamp = rospy.Time.from_sec(round(self._now, 3))
         key = (stamp + rospy.Duration(TOLERANCE)).to_nsec()
         self._tick()
-        base = transform_msg(sighting.base_in_odom, "odom", "base_footprint", stamp)
+        base = transform_msg(observation.base_in_odom, "odom", "base_footprint", stamp)
         self._tf.publish(TFMessage([base]))
-        self._scans.publish(_scan_message(sighting.scan, stamp))
+        self._scans.publish(_scan_message(observation.scan, stamp))
         with self._has_answer:
             self._has_answer.wait_for(lambda: key in self._answers, patience)
             return self._answers.pop(key, None)

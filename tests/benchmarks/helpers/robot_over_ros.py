@@ -62,7 +62,7 @@ def _start_node(options, above: Mapping[str, Any]) -> subprocess.Popen:
 
 
 def add_node_options(parser, config: Optional[Path]) -> None:
-    """What says which node drives, and how fast."""
+    """Parse the options that select the navigation node and the speed."""
     parser.add_argument("--node", default="move_base_lite/move_base_lite", help="package/executable")
     parser.add_argument("--config", default=config, help="parameters of move_base")
     parser.add_argument("--local-planner", help="base_local_planner instead of that of the parameters")
@@ -148,7 +148,7 @@ class RobotOverRos:
 
 
 def client_with_goal(robot: RobotOverRos, frame: str, goal: Pose2) -> actionlib.SimpleActionClient:
-    """Sends the goal to a node that has forgotten what it saw before. Exits if the node does not start."""
+    """Send the goal to a node whose costmaps are cleared. Exits if the node does not start."""
     client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
     until = time.monotonic() + START_SECONDS
     while not server_is_ready(client):

@@ -1,4 +1,4 @@
-"""People in a simulated home: cylinders that walk to and fro along plans of their own."""
+"""Pedestrians in a simulated home: cylinders that walk back and forth along planned paths."""
 
 import math
 from typing import List
