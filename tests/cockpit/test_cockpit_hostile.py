@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """The cockpit with unauthorized requests, malformed messages from pages, and a malformed graph.
 
-After each of them a valid page is served, the graph continues, and a robot driven by a page that is cut off is
-commanded to stop.
+After each of them a valid page is served, the graph continues, and a robot driven by a page that is cut off
+is commanded to stop.
 """
 
 import contextlib
