@@ -21,6 +21,8 @@ WORDS_FILE = Path(__file__).with_name("retired_words.yaml")
 SHORT_MODULE = 25
 TEXT_SUFFIXES = {".py", ".md", ".yaml", ".yml", ".sh", ".launch", ".test", ".msg", ".srv", ".action", ".toml"}
 TEXT_SUFFIXES |= {".txt", ".xml", ".json", ".html", ".css", ".js", ".cff", ".rst", ".cfg", ".in", ""}
+# What is searched in a copy without git.
+SOURCES = ("src", "tests", "docs", "scripts", "scenarios", "docker", "map", "rvizConfig", "*.md", "*.toml")
 CAMEL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|_")
 
 
@@ -58,13 +60,16 @@ def retired_words(rules: dict) -> List[Retired]:
     return compiled
 
 
-def tracked_files(root: Path, paths: Sequence[str] = ()) -> List[str]:
-    """Paths of the text files of a checkout, relative to its root."""
-    listed = subprocess.run(
-        ["git", "-C", str(root), "ls-files", "-z", "--", *paths], stdout=subprocess.PIPE, check=True
-    )
-    names = listed.stdout.decode().split("\0")
-    return [name for name in names if name and (root / name).is_file() and Path(name).suffix in TEXT_SUFFIXES]
+def text_files(root: Path, paths: Sequence[str] = ()) -> List[str]:
+    """Return the tracked text files of a checkout, or all text files of a copy without git."""
+    command = ["git", "-C", str(root), "ls-files", "-z", "--", *paths]
+    listed = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=False)
+    if listed.returncode == 0:
+        names = listed.stdout.decode().split("\0")
+    else:
+        found = (path for part in SOURCES for path in [*root.glob(part), *root.glob(f"{part}/**/*")])
+        names = sorted(str(path.relative_to(root)) for path in found if "__pycache__" not in path.parts)
+    return [name for name in names if (root / name).is_file() and Path(name).suffix in TEXT_SUFFIXES]
 
 
 def find_hits(root: Path, names: Sequence[str], rules: dict) -> Iterator[Hit]:
@@ -73,10 +78,14 @@ def find_hits(root: Path, names: Sequence[str], rules: dict) -> Iterator[Hit]:
     for name in names:
         if any(fnmatch.fnmatch(name, pattern) for pattern in rules["skip"]):
             continue
+        exempt = [
+            re.compile(each["line"]) for each in rules["allowed"] if fnmatch.fnmatch(name, each["files"])
+        ]
         yield from hits_of(name, 0, name.replace("/", " "), words)
         text = (root / name).read_text(encoding="utf-8", errors="replace")
         for number, line in enumerate(text.splitlines(), 1):
-            yield from hits_of(name, number, line, words)
+            if not any(pattern.search(line) for pattern in exempt):
+                yield from hits_of(name, number, line, words)
 
 
 def hits_of(name: str, number: int, line: str, words: Sequence[Retired]) -> Iterator[Hit]:
@@ -147,7 +156,7 @@ def main() -> int:
     parser.add_argument("--list", action="store_true", help="list every place, not only counts")
     options = parser.parse_args()
     rules, root = load_rules(), options.root.resolve()
-    hits = list(find_hits(root, tracked_files(root, options.paths), rules))
+    hits = list(find_hits(root, text_files(root, options.paths), rules))
     counts: Dict[str, int] = defaultdict(int)
     for hit in hits:
         counts[hit.use] += 1
