@@ -3,7 +3,7 @@
 #
 # Builds the image without a container engine's daemon, from an empty cache, and proves it: the mission as a user who
 # is not root, once more without network and with nothing writable but the run folder, an interrupted one, and the
-# tests. Needs root, buildah, and debootstrap for the base. Takes half an hour; tells what it is at, and since when.
+# tests. Needs root, buildah, and debootstrap for the base. Takes half an hour; prints each step with the time since the start.
 # Exit code: 0 all proven, 1 failure, 2 bad usage.
 #
 #   --base TAR       root file system of Debian 13 to build on (default: made with debootstrap)
@@ -18,7 +18,7 @@ root=$(cd -P -- "$(dirname -- "$(readlink -f -- "$0")")/.." && pwd)
 readonly name=home-service-robot user=1000 certificates=/etc/ssl/certs/ca-certificates.crt
 base='' ros_tests='' rviz='' work=''
 
-say() { printf '\n== %d:%02d  %s\n' $((SECONDS / 60)) $((SECONDS % 60)) "$*"; } # with the time since the start
+print_line() { printf '\n== %d:%02d  %s\n' $((SECONDS / 60)) $((SECONDS % 60)) "$*"; } # with the time since the start
 
 show() { # PATTERN LOG: of what is read, the lines that match, with the time since the start; all of it goes to LOG
     local line
@@ -82,7 +82,7 @@ builder() { buildah --root "$work/storage" --runroot "$work/state" "$@"; }
 
 make_base() {
     if [[ -z $base ]]; then
-        say "A root file system of Debian 13"
+        print_line "A root file system of Debian 13"
         debootstrap --variant=minbase trixie "$work/base" 2>&1 | show '^I: (.* the base system|Base system)' \
             "$work/debootstrap.log" || fail "debootstrap failed (see $work/debootstrap.log)"
         # As the image of that name: without manuals and translations.
@@ -142,7 +142,7 @@ SANDBOX
 expect() { # EXIT_CODE TITLE READ_ONLY ARGUMENT...
     local expected=$1 title=$2 code=0
     shift 2
-    say "$title"
+    print_line "$title"
     run_image "$@" || code=$?
     ((code == expected)) || fail "$title: exit code $code, not $expected"
     echo "exit code $code, as expected"
@@ -152,7 +152,7 @@ parse "$@"
 check_tools
 make_work_folder
 make_base
-say "The image, from an empty cache"
+print_line "The image, from an empty cache"
 build_image "$name" --no-cache
 expect 0 "The mission, as user $user, without network" no --seed 1 --gif
 expect 0 "The mission with nothing writable but the run folder" yes home_service --seed 2
@@ -162,11 +162,11 @@ expect 0 "The unit tests, as user $user" no test unit
 # shellcheck disable=SC2086 # NAMES may be several
 expect 0 "The ROS tests, as user $user" no test ros $ros_tests
 if [[ -n $rviz ]]; then
-    say "The image with rviz"
+    print_line "The image with rviz"
     build_image "$name:rviz" --target rviz
     environment+=("DISPLAY=$DISPLAY" LIBGL_ALWAYS_SOFTWARE=1)
     expect 0 "The mission, shown in rviz" yes home_service --rviz
 fi
-say "What the runs left, and to whom it belongs"
+print_line "What the runs left, and to whom it belongs"
 ls -ln "$work"/runs/*/
-say "All proven"
+print_line "All proven"

@@ -23,5 +23,5 @@ if ! .venv/bin/python3 -W ignore::DeprecationWarning -m mkdocs build --quiet --s
     cat "$log" >&2
     fail "the site has not been built"
 fi
-say "build/site/index.html"
+print_line "build/site/index.html"
 [[ -z $* ]] || exec .venv/bin/python3 -m http.server --bind 127.0.0.1 --directory build/site 8800

@@ -20,7 +20,7 @@ clock_pid=
 aside_pid=
 undo=: # of what must not be left half done
 
-say() { printf '%s\n' "$*"; }
+print_line() { printf '%s\n' "$*"; }
 
 fail() {
     printf 'error: %s\n' "$*" >&2
@@ -70,10 +70,10 @@ end_group() { # PID: asked more than once, since bash loses a signal that comes 
 step() { # TITLE LOG COMMAND...: runs the command, shows how long it takes, returns its exit code
     local title=$1 log=$2 status=0 started=$SECONDS
     shift 2
-    say "$title ..."
+    print_line "$title ..."
     # Own process groups, and waiting with `wait`, let a signal sent to this shell alone end the step at once.
     set -m
-    (while sleep 15; do say "  ... $((SECONDS - started)) s"; done) &
+    (while sleep 15; do print_line "  ... $((SECONDS - started)) s"; done) &
     clock_pid=$!
     "$@" >>"$log" 2>&1 </dev/null &
     step_pid=$!
@@ -82,7 +82,7 @@ step() { # TITLE LOG COMMAND...: runs the command, shows how long it takes, retu
     step_pid=
     end_group "$clock_pid"
     clock_pid=
-    ((status)) || say "  done in $((SECONDS - started)) s"
+    ((status)) || print_line "  done in $((SECONDS - started)) s"
     return "$status"
 }
 

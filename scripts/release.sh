@@ -19,7 +19,7 @@ version_of_release() {
     others=$(git ls-files 'src/*package.xml' tests/package.xml | xargs grep -L "<version>$version</version>" || true)
     grep -qF "image.version=\"$version\"" docker/Dockerfile || others+=" docker/Dockerfile"
     [[ -z $others ]] || fail "not of version $version: ${others//$'\n'/ }"
-    say "$version"
+    print_line "$version"
 }
 
 make_archive() { # FILE VERSION: time stamps are the commit's, and gzip adds none

@@ -69,11 +69,11 @@ look_for_missing() { # EXTRA...: each of the variables is empty when nothing of 
 has_stamp() { [[ -e $1 && $(<"$1") == "$2" ]]; } # FILE TEXT
 
 announce() {
-    say "Setting up the workspace in $root (once; logs in logs/setup/):"
-    [[ -z $packages ]] || say "  Debian packages, with apt-get: ${packages//$'\n'/ }"
-    [[ -z $requirements ]] || say "  Python packages, into .venv: $(requirement_names)"
-    [[ -z $build ]] || say "  catkin build, into build/ and devel/"
-    [[ -z $kernels ]] || say "  compiled numerical kernels, into __pycache__ folders of src/"
+    print_line "Setting up the workspace in $root (once; logs in logs/setup/):"
+    [[ -z $packages ]] || print_line "  Debian packages, with apt-get: ${packages//$'\n'/ }"
+    [[ -z $requirements ]] || print_line "  Python packages, into .venv: $(requirement_names)"
+    [[ -z $build ]] || print_line "  catkin build, into build/ and devel/"
+    [[ -z $kernels ]] || print_line "  compiled numerical kernels, into __pycache__ folders of src/"
 }
 
 start_python() { # what needs neither Debian's packages nor the build goes on beside them
@@ -91,7 +91,7 @@ prepare_python() {
     local needed
     [[ $packages != *python3-venv* ]] || install_packages python3-venv
     if [[ -n $(missing_wheel) ]]; then
-        say "PyBullet has no wheel for this machine: it is compiled once, in about 3 minutes on two cores, into $wheels"
+        print_line "PyBullet has no wheel for this machine: it is compiled once, in about 3 minutes on two cores, into $wheels"
         mapfile -t needed < <(cd "$root/scripts" && missing_in apt-packages-wheel.txt)
         ((${#needed[@]} == 0)) || { check_root "${needed[*]}" && install_packages "${needed[@]}"; }
     fi
@@ -100,7 +100,7 @@ prepare_python() {
 
 readonly not_fetched=3 not_installed=4 not_compiled=5
 
-install_python() { # the exit code tells what did not end well
+install_python() { # the exit code states which part failed
     if [[ -n $requirements ]]; then
         fetch_requirements || return "$not_fetched"
         install_requirements || return "$not_installed"
@@ -117,7 +117,7 @@ finish_python() {
         0) ;;
         "$not_fetched") give_up "the Python packages could not be fetched" "$log" ;;
         "$not_compiled")
-            say "warning: the kernels were not compiled; each is when it is first needed (see $logs/kernels.log)"
+            print_line "warning: the kernels were not compiled; each is when it is first needed (see $logs/kernels.log)"
             ;;
         *) give_up "pip failed" "$log" ;;
     esac
@@ -154,7 +154,7 @@ main() {
         esac
     done
     set_up "${extras[@]}"
-    say "The workspace is set up${packages_only:+, but for the build}."
+    print_line "The workspace is set up${packages_only:+, but for the build}."
 }
 
 if [[ ${BASH_SOURCE[0]} == "$0" ]]; then main "$@"; fi

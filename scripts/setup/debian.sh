@@ -39,7 +39,7 @@ apt_get() { # NAME...
     done
     # An interrupted installation is finished first: by dpkg only if apt-get refuses, since dpkg waits for nobody.
     # A source that is down matters only if a package comes from it.
-    "${as_root[@]}" sh -c 'mend() { apt-get -f install "$@"; }; mend "$@" || { dpkg --configure -a && mend "$@"; }' \
+    "${as_root[@]}" sh -c 'repair() { apt-get -f install "$@"; }; repair "$@" || { dpkg --configure -a && repair "$@"; }' \
         sh "${options[@]}" &&
         { "${as_root[@]}" apt-get update -o Acquire::Retries=3 || true; } &&
         "${as_root[@]}" apt-get install "${options[@]}" "$@"

@@ -15,7 +15,7 @@ ros_environment() { # ROOT: what ROS needs in the environment, every socket on t
     use_known_versions "$1"
 }
 
-# Before roslaunch starts anything, roscore.xml has two programs in Python tell ROS's versions, one after the other.
+# Before roslaunch starts anything, roscore.xml runs two Python programs, one after the other, to determine ROS's versions.
 # ROS_ETC_DIR is where it is looked for: in a folder like the one in effect, but with the answers.
 use_known_versions() { # ROOT
     local etc=${ROS_ETC_DIR:-/etc/ros} known=$1/build/etc
@@ -37,8 +37,8 @@ know_versions() { # ETC FOLDER
 }
 
 # Numba reads what it has compiled beside the sources only if it may also write there. Who may not, as another user or
-# on a read-only disk, would compile all anew: that takes longer than the nodes wait for each other.
-use_own_kernels() { # ROOT: such a user has copies, made anew whenever the set-up has compiled
+# on a read-only disk, would compile all of them again: that takes longer than the nodes wait for each other.
+use_own_kernels() { # ROOT: such a user has copies, made again whenever the set-up has compiled
     local cache compiled=$1/build/.kernels
     [[ -z ${NUMBA_CACHE_DIR:-} && -e $compiled ]] && ! may_write "$1/src" && cache=$(user_cache) || return 0
     cache=$cache/kernels/$(numba_name "$1")

@@ -4,12 +4,12 @@
 missing_requirements() { # FILE...: those that .venv does not hold
     local file
     for file; do
-        grep -qsxF "$(requirement_stamp "$file")" "$root/.venv/.set-up" || say "$file"
+        grep -qsxF "$(requirement_stamp "$file")" "$root/.venv/.set-up" || print_line "$file"
     done
 }
 
 requirement_stamp() { # FILE
-    say "$(sha256sum "$1") $root $(readlink /usr/bin/python3)"
+    print_line "$(sha256sum "$1") $root $(readlink /usr/bin/python3)"
 }
 
 requirement_names() {
@@ -38,7 +38,7 @@ fetch_requirements() { # those that are missing, into .venv/wheels
     [[ -z $(missing_wheel) ]] || build_wheel || return
     local files
     mapfile -t files < <(options_of_missing)
-    # What PyPI has as a source only is built in pip's own way: Debian 11 has no wheel, and a distutils of its own.
+    # Packages without wheels are built in pip's isolated environment: Debian 11 lacks wheel and has a patched distutils.
     SETUPTOOLS_USE_DISTUTILS=stdlib pip wheel --use-pep517 --no-deps --wheel-dir "$root/.venv/wheels" \
         --find-links "$wheels" "${files[@]}"
 }
@@ -65,11 +65,11 @@ stamps_of_others() { # FILE: of requirements that are not set up now, which stay
 
 rospy_of_system=/usr/lib/python3/dist-packages/rospy
 
-shield_rospy() { # that of Debian 11 calls Thread.isAlive, which its Python no longer has, when a second topic is heard
+shield_rospy() { # that of Debian 11 calls Thread.isAlive, which its Python no longer has, when a second topic is subscribed to
     grep -qs 'isAlive()' "$rospy_of_system/core.py" || return 0
     local site
     site=$(echo "$root"/.venv/lib/python3.*/site-packages)
-    say 'import threading; threading.Thread.isAlive = threading.Thread.is_alive' >"$site/rospy_shield.pth"
+    print_line 'import threading; threading.Thread.isAlive = threading.Thread.is_alive' >"$site/rospy_shield.pth"
 }
 
 options_of_missing() {
@@ -96,7 +96,7 @@ missing_wheel() { # its name, if it is needed and neither PyPI nor the cache has
     grep -qx requirements.txt <<<"$requirements" || return 0
     tag=$(/usr/bin/python3 -c 'import sys; print("cp%d%d" % sys.version_info[:2])') || return 0
     if [[ $(uname -m) == x86_64 ]] && is_among "$tag" cp38 cp39 cp310 cp311; then return 0; fi
-    has_whole_wheel "$wheels/pybullet-$(pybullet_version)-$tag-"*"$(uname -m).whl" || say "pybullet for $tag"
+    has_whole_wheel "$wheels/pybullet-$(pybullet_version)-$tag-"*"$(uname -m).whl" || print_line "pybullet for $tag"
 }
 
 has_whole_wheel() { # FILE: its table of contents is at its end

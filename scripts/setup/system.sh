@@ -1,5 +1,5 @@
 # shellcheck shell=bash disable=SC2154,SC2034 # variables of lib.sh and setup.sh
-# What can be told of this machine and this place before anything is changed; and what a log says in one sentence.
+# Checks of this machine and folder before anything is changed, and the summary of a log in one sentence.
 
 readonly supported="Debian 11, 12 or 13, Ubuntu 22.04, or Ubuntu 20.04 with ROS Noetic in $noetic"
 
@@ -66,12 +66,12 @@ has_room() { (($(df --output=avail "$root" | tail -n 1) >= 1024)); } # for a MB:
 reason_in() { # LOG: what is no fault of the project's, in a sentence; nothing if it is none of these
     local proxy=${https_proxy:-${HTTPS_PROXY:-${http_proxy:-${HTTP_PROXY:-}}}}
     if grep -qE 'No space left on device|not have enough free space' "$1" || ! has_room; then
-        say "the disk is full: make room and start again, it goes on from there"
+        print_line "the disk is full: make room and start again, it goes on from there"
     elif [[ -n $proxy ]] && grep -qiE 'ProxyError|Cannot connect to proxy|(connect|resolve).*proxy' "$1"; then
-        say "the proxy ${proxy/#*@/} does not answer"
+        print_line "the proxy ${proxy/#*@/} does not answer"
     elif grep -qE 'Temporary failure|Could not (resolve|connect)|Unable to connect|Network is unreachable|NewConnectionError|ConnectTimeout' "$1"; then
-        say "no network: the packages could not be downloaded"
+        print_line "no network: the packages could not be downloaded"
     elif grep -qE 'IncompleteRead|Connection broken|ReadTimeout|Hash Sum mismatch|Connection reset' "$1"; then
-        say "a download broke off: start again, it goes on from there"
+        print_line "a download broke off: start again, it goes on from there"
     fi
 }

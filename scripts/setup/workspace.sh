@@ -5,7 +5,7 @@ readonly last=$root/build/.last # where the last good build waits while the next
 
 build_inputs() { # two lines: which packages there are, and what the build reads
     cd "$root" || return
-    find -L src -name package.xml | sort | cat - <(say "$root" "$(readlink /usr/bin/python3)") <(ignored_packages) | sha256sum
+    find -L src -name package.xml | sort | cat - <(print_line "$root" "$(readlink /usr/bin/python3)") <(ignored_packages) | sha256sum
     find -L src -mindepth 2 -type f \( -name package.xml -o -name CMakeLists.txt -o -name setup.py -o -path '*/nodes/*' \
         -o -name '*.msg' -o -name '*.srv' -o -name '*.action' -o -name '*.cfg' \
         -o -name '*.c' -o -name '*.cpp' -o -name '*.h' -o -name '*.hpp' \) ! -path '*/__pycache__/*' -print0 |
@@ -20,25 +20,25 @@ build_workspace() {
     restore_last_build
     undo=restore_last_build
     clear_build
-    # A build that was made elsewhere, or holds packages that have gone, is made anew.
+    # A build that was made elsewhere, or contains removed packages, is made again.
     if [[ $(head -n 1 "$last/build/.set-up" 2>/dev/null) == "${inputs%%$'\n'*}" ]]; then
         cp -a "$last/build" "$last/devel" "$root"
         rm "$stamp"
     fi
     if step "Building the workspace" "$log" catkin_build; then
-        say "$inputs" >"$stamp"
+        print_line "$inputs" >"$stamp"
         rm -rf "$last"
         take_in_all
     else
         restore_last_build
         leave_out_invalid
-        tell_failure "$log"
+        report_failure "$log"
         [[ -e $stamp ]] || fail "$failure"
     fi
     undo=:
 }
 
-tell_failure() { # LOG: in $failure; one that the sources are at fault for is kept, so that they are not built again
+report_failure() { # LOG: in $failure; one that the sources are at fault for is kept, so that they are not built again
     failure=$(reason_in "$1")
     if [[ -z $failure ]]; then
         # What is made beside the part that fails goes on for a while.
@@ -59,7 +59,7 @@ clear_build() { # but for other people's projects that run at this moment: each 
     local folder
     for folder in "$root"/build/projects/*/; do
         [[ ! -d $folder ]] || flock --nonblock "$folder/lock" rm -rf "$folder" ||
-            say "left alone, in use: $folder"
+            print_line "left alone, in use: $folder"
     done
     mkdir -p "$last/build"
     parts_of_build "$root/build" -exec mv -t "$last/build" {} +
@@ -97,16 +97,16 @@ for path in sorted(find_package_paths(sys.argv[1])):
         valid.append(folder)
     except (InvalidPackage, UnicodeDecodeError):
         pass
-print(";".join(valid))' "$root/src") && say_source_space "$valid"
+print(";".join(valid))' "$root/src") && write_source_space "$valid"
 }
 
 take_in_all() { # once the package that was at fault has gone
     [[ -e $root/build/.failed && -w $root/build ]] || return 0
-    [[ ! -e $root/devel/.catkin ]] || say_source_space "$root/src"
+    [[ ! -e $root/devel/.catkin ]] || write_source_space "$root/src"
     rm "$root/build/.failed"
 }
 
-say_source_space() { # FOLDERS, as catkin has it: separated by semicolons
+write_source_space() { # FOLDERS, as catkin has it: separated by semicolons
     printf %s "$1" >"$root/devel/.catkin.new" && mv "$root/devel/.catkin.new" "$root/devel/.catkin"
 }
 
@@ -148,7 +148,7 @@ ignored_packages() { # folders
     while read -r name folder; do is_of_user[_$name]=yes; done < <(of_user <<<"$packages")
     while read -r name folder; do
         if is_of_system "$name" && [[ $folder == src/compat/* ]] || [[ -n ${is_of_user[_$name]:-} ]]; then
-            say "$folder"
+            print_line "$folder"
         fi
     done < <(grep -E " ${giving_way}[^/]+\$" <<<"$packages")
 }
@@ -178,25 +178,25 @@ check_names() { # catkin builds nothing where two packages have one name
         paste -sd' ' | sed 's/ / and /g')): rename or remove one"
     while read -r name; do
         name=${name##*/}
-        ! of_user <<<"$packages" | grep -q "^$name " || say "your package '$name' takes the place of the project's own"
+        ! of_user <<<"$packages" | grep -q "^$name " || print_line "your package '$name' takes the place of the project's own"
     done < <(ignored_packages)
 }
 
-fault_in() { # LOG: which package does not build, and of what it says that it lacks
+fault_in() { # LOG: the package that does not build, and its missing dependency
     local package lacks remedy="./scripts/setup.sh --projects installs what most packages in C++ need"
     package=$(without_warnings "$1" | sed -nE "s/^Error\(s\) in package '(.*)\/package.xml':.*/\1/p
         s/^(CMake Error at | +)([^/ ][^ :]*)\/CMakeLists\.txt:[0-9]+ \(.*/\2/p
         s/^make\[[0-9]+\]: \*\*\* \[([^ ]*)\/CMakeFiles\/.*/\1/p" | head -n 1)
     lacks=$(sed -nE 's/.*Could not find a package configuration file provided by "([^"]*)".*/\1/p' "$1" | head -n 1)
     if [[ -z $package ]]; then
-        say "the catkin build failed"
+        print_line "the catkin build failed"
     else
         lacks=${lacks:+: it needs $lacks, which is not installed ($remedy)}
-        say "the package '$(basename "$package")' does not build$lacks"
+        print_line "the package '$(basename "$package")' does not build$lacks"
     fi
 }
 
-without_warnings() { # LOG; they tell the files that led to them, as errors do
+without_warnings() { # LOG; warnings name the files that led to them, as errors do
     awk '/^CMake .*Warning/ { warns = 1 } /^(CMake Error|make|Error)/ { warns = 0 } !warns' "$1"
 }
 
