@@ -29,7 +29,7 @@ class BagsTest(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
 
-    def test_a_recorded_run_is_localized_again_as_accurately(self):
+    def test_a_recorded_run_is_localized_again_as_well(self):
         live = self._run("test_navigation.sh", "--goals", "1.5 0.3 0", "--record", "inputs", "--seed", "106")
         bag = self.folder / "live/bag/inputs_0.bag"
         with rosbag.Bag(str(bag)) as recorded:

@@ -36,7 +36,7 @@ class CommanderTest(unittest.TestCase):
         with self.assertRaisesRegex(CommanderError, "no command was given yet"):
             lonely.outcome()
 
-    def test_2_a_rotation_and_a_reverse_drive_have_the_requested_length(self):
+    def test_2_a_turn_and_a_reverse_motion_have_the_requested_length(self):
         start = self.referee.truth
         self.robot.spin(math.pi / 2.0)
         self._assert_result(Result.SUCCEEDED)
@@ -70,7 +70,7 @@ class CommanderTest(unittest.TestCase):
         print(f"{outcome.reason}; {error:.3f} m off the last one")
         self.assertLess(error, 0.25)
 
-    def test_5_time_outs_and_senseless_commands_have_an_outcome(self):
+    def test_5_time_outs_and_invalid_commands_have_an_outcome(self):
         self.robot.go_to(-4.0, -2.0, timeout=0.5)
         self._assert_result(Result.TIMED_OUT)
         self.robot.go_to(math.nan, 0.0)
@@ -80,7 +80,7 @@ class CommanderTest(unittest.TestCase):
         with self.assertRaisesRegex(CommanderError, "no waypoints"):
             self.robot.follow_waypoints([])
 
-    def test_6_costmaps_pose_and_map_are_set_or_the_reason_is_reported(self):
+    def test_6_costmaps_pose_and_map_are_set_or_the_reason_is_given(self):
         self.robot.clear_costmaps()
         here = self.robot.pose
         self.robot.set_initial_pose(here.x, here.y, here.yaw)

@@ -24,7 +24,7 @@ APART_SECONDS, APART_EXPLORING_SECONDS = 1.0, 5.0
 
 
 class ComingBackTest(unittest.TestCase):
-    def test_a_mission_survives_the_death_of_each_of_its_nodes(self):
+    def test_a_mission_survives_the_crash_of_each_of_its_nodes(self):
         with tempfile.TemporaryDirectory() as folder:
             run = Run(
                 "home_service",
@@ -49,7 +49,7 @@ class ComingBackTest(unittest.TestCase):
         self.assertEqual(result["final_state"], "delivered")
         self.assertFalse(result["repeatable"])
 
-    def test_a_map_survives_the_death_of_what_makes_it(self):
+    def test_mapping_survives_the_crash_of_its_nodes(self):
         with tempfile.TemporaryDirectory() as folder:
             run = Run("map_home", "--seed", "61", "--output", folder)
             try:

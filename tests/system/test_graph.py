@@ -67,7 +67,7 @@ class GraphTest(unittest.TestCase):
     def test_the_services_have_the_official_names(self):
         self._wait_for(SERVICES, lambda: {name for name, _ in self.master.getSystemState()[2]})
 
-    def test_the_page_of_names_knows_every_topic_and_service(self):
+    def test_docs_names_lists_every_topic_and_service(self):
         self._wait_for(NODES, self._nodes)
         page = NAMES_PAGE.read_text(encoding="utf-8")
         publishers, _, services = self._settled_graph()

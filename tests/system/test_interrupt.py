@@ -44,7 +44,7 @@ class InterruptTest(unittest.TestCase):
             self.assertEqual(self._interrupted_run(moment, mark, signal.SIGINT, GUARD), 130)
             self.assertEqual(processes_with(mark), [], f"interrupted {moment:.3f} s after the guard of nodes")
 
-    def test_what_a_person_is_meant_to_end_ends_well(self):
+    def test_an_interactive_run_succeeds_when_it_is_interrupted(self):
         mark, environment = marked_environment()
         with tempfile.TemporaryDirectory() as folder:
             run = subprocess.Popen(
@@ -71,7 +71,7 @@ class InterruptTest(unittest.TestCase):
         self.assertEqual(self._interrupted_run(0.0, mark, signal.SIGHUP, MOVE_BASE), 130)
         self.assertEqual(processes_with(mark), [])
 
-    def test_a_killed_run_takes_its_nodes_along(self):
+    def test_the_nodes_of_a_killed_run_end(self):
         mark = f"HOME_SERVICE_TEST={uuid.uuid4()}"
         self._interrupted_run(8.0, mark, signal.SIGKILL)
         wait_until("the nodes to end", lambda: not processes_with(mark), LEFT_SECONDS)

@@ -18,10 +18,10 @@ REASON = "sim_bridge: was ended by SIGKILL"
 
 
 class KilledTest(unittest.TestCase):
-    def test_a_mission_whose_simulator_is_killed_ends_with_that_for_its_reason(self):
+    def test_a_mission_whose_simulator_is_killed_fails_with_that_reason(self):
         self._assert_told("home_service.sh", "pick_objects: driving to", f"FAILURE: {REASON}")
 
-    def test_a_map_that_nobody_draws_any_more_is_not_waited_for(self):
+    def test_a_map_is_not_waited_for_if_slam_was_killed(self):
         self._assert_told("map_home.sh", " x real time", f"error: {REASON}")
 
     def _assert_told(self, script, progress, verdict):

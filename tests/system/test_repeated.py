@@ -16,10 +16,10 @@ RUN_SECONDS = 150.0
 
 
 class RepeatedTest(unittest.TestCase):
-    def test_a_mission_is_the_same_again_beside_other_work(self):
+    def test_a_mission_is_repeatable_under_load(self):
         self._repeats("home_service.sh", "--seed", "5")
 
-    def test_a_map_is_the_same_again_beside_other_work(self):
+    def test_a_map_is_repeatable_under_load(self):
         """The robot explores by itself; a small world, so that it is soon known."""
         self._repeats("map_home.sh", "--seed", "5", "--world", str(ROOT / "tests/system/two_rooms.world"))
 
@@ -36,7 +36,7 @@ class RepeatedTest(unittest.TestCase):
         self.assertEqual(again.returncode, 0, again.stdout)
         self.assertIn(f"hash {result['hash'][:16]}", again.stdout)
 
-    def test_a_folder_that_no_run_has_left_is_refused_in_a_line(self):
+    def test_a_folder_without_a_run_is_refused_in_one_line(self):
         with tempfile.TemporaryDirectory() as folder:
             refused = _script("reproduce.sh", folder)
         self.assertEqual(refused.returncode, 2, refused.stdout)

@@ -53,7 +53,7 @@ class ReportTest(unittest.TestCase):
             self.assertEqual(code, 1, output)
             self.assertFalse(_checked_result(folder)["success"])
 
-    def test_with_a_full_disk_the_run_goes_on_and_says_what_is_missing(self):
+    def test_with_a_full_disk_the_run_continues_and_reports_what_is_missing(self):
         with tempfile.TemporaryDirectory() as parent:
             script = f"ulimit -f {FULL // 1024}; exec '{ROOT}/scripts/test_navigation.sh' \"$@\""
             code, folder, output = _run(parent, "--goals", "1.0 0.5 0.0", "--gif", script=script)
@@ -63,7 +63,7 @@ class ReportTest(unittest.TestCase):
         self.assertTrue([gap for gap in gaps if gap.startswith("run.gif: ")], gaps)
         self.assertIn("warning: missing: run.gif", output)
 
-    def test_a_disk_that_fills_meanwhile_is_told_in_a_few_words_and_makes_a_failure_of_the_run(self):
+    def test_a_disk_that_fills_up_is_reported_briefly_and_fails_the_run(self):
         mark, environment = marked_environment()
         command = [ROOT / "scripts/test_navigation.sh", "--goals", "1.0 0.5 0.0; 0.0 0.5 3.0", "--output"]
         with tempfile.TemporaryDirectory() as parent:

@@ -20,27 +20,27 @@ LOST_ODOMETRY = "faults: [{kind: odometry_stopped, start: 8.0}]\n"
 
 
 class StandstillTest(unittest.TestCase):
-    def test_a_pause_for_ever_is_told(self):
+    def test_a_pause_without_end_is_reported(self):
         code, said = self.run_to_its_end("--speed", "2", "--timeout", str(TIMEOUT), do=self.pause)
         self.assertEqual(code, 1)
         self.assertRegex(said, r"time stands still at [\d.]+ s: the simulation is paused")
         self.assertRegex(said, r"FAILURE: not done within .*; simulated time stands still at")
 
-    def test_a_node_that_stands_still_is_named_as_soon_as_time_does_and_at_the_end(self):
+    def test_a_stopped_node_is_named_when_time_stops_and_at_the_end(self):
         code, said = self.run_to_its_end("--timeout", "25", do=lambda _: self.stop("move_base"))
         self.assertEqual(code, 1)
         self.assertRegex(said, r"time stands still at [\d.]+ s: the simulator waits for move_base")
         self.assertRegex(said, r"FAILURE: not done within .*; no answer of move_base")
         self.assertEqual(processes_with(MARK), [])
 
-    def test_a_simulator_that_stands_still_is_named(self):
+    def test_a_stopped_simulator_is_named(self):
         code, said = self.run_to_its_end("--timeout", "25", do=lambda _: self.stop("sim_bridge"))
         self.assertEqual(code, 1)
         self.assertRegex(said, r"time stands still at [\d.]+ s: the simulator does not answer")
         self.assertRegex(said, r"FAILURE: not done within .*; no answer of sim_bridge")
         self.assertEqual(processes_with(MARK), [])
 
-    def test_odometry_that_is_lost_for_good_ends_the_run_long_before_its_time(self):
+    def test_odometry_that_stops_for_good_ends_the_run_early(self):
         """Three times the patience of move_base, at as many times real time as ever."""
         with tempfile.NamedTemporaryFile("w", suffix=".yaml") as faults:
             faults.write(LOST_ODOMETRY)

@@ -11,7 +11,7 @@ def solid(pose, name="cup"):
     return SolidBox(name, SIZE, pose)
 
 
-def test_a_box_stands_in_front_of_its_place_rides_and_is_set_down_in_front_of_the_robot():
+def test_a_box_is_placed_in_front_of_its_place_carried_and_set_down_in_front_of_the_robot():
     bodies = BoxPlacer()
     (move,) = bodies.update([solid(HALL)], ROBOT)
     assert move == PlaceBox(solid(HALL), Pose2(2.0, 2.5, 0.0))
@@ -38,7 +38,7 @@ def test_two_boxes_do_not_stand_in_each_other():
     assert moves[0].pose.distance_to(moves[1].pose) > SIZE * math.sqrt(2.0)
 
 
-def test_what_another_mission_does_not_know_vanishes():
+def test_boxes_that_the_next_mission_does_not_have_are_removed():
     bodies = BoxPlacer()
     bodies.update([solid(HALL, "cup"), solid(None, "book")], ROBOT)
     assert bodies.update([], ROBOT) == [RemoveBox("book"), RemoveBox("cup")]

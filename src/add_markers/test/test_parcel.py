@@ -8,7 +8,7 @@ PICKUP, DROPOFF = NamedPlace("pickup", Pose2(2.0, 3.0), 0.4), NamedPlace("dropof
 ELSEWHERE = Pose2(0.0, 0.0)
 
 
-def test_the_parcel_waits_is_carried_away_and_set_down():
+def test_the_parcel_waits_is_carried_and_set_down():
     parcel = CarriedParcel(PICKUP, DROPOFF, 5.0)
     assert parcel.update(0.0, ELSEWHERE) == PICKUP.pose
     assert parcel.update(10.0, Pose2(2.1, 3.1)) == PICKUP.pose
@@ -50,7 +50,7 @@ def test_an_unknown_source_of_the_pose_is_refused():
         MarkerSettings(zones_file="x", pose_source="gps")
 
 
-def test_a_clock_that_jumps_forth_and_back_does_not_hold_the_parcel_back():
+def test_a_clock_that_jumps_ahead_and_back_does_not_delay_the_parcel():
     carried, timed = CarriedParcel(PICKUP, DROPOFF, 5.0), TimedParcel(PICKUP, DROPOFF, 5.0, 5.0)
     for now in (1e6, 0.0):
         assert carried.update(now, PICKUP.pose) == timed.update(now) == PICKUP.pose

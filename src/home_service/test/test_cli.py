@@ -23,7 +23,7 @@ def test_malformed_goals_are_refused(text):
 
 
 @pytest.mark.parametrize("text", ["-1", "fast", "nan", "1e9"])
-def test_a_senseless_speed_is_refused(text):
+def test_an_invalid_speed_is_refused(text):
     with pytest.raises(ArgumentTypeError):
         speed_factor(text)
 
@@ -31,7 +31,7 @@ def test_a_senseless_speed_is_refused(text):
 @pytest.mark.parametrize(
     "command", ["launch", "test_navigation", "pick_objects", "add_marker", "home_service"]
 )
-def test_every_command_explains_itself(command, capsys):
+def test_every_command_has_a_help_text(command, capsys):
     with pytest.raises(SystemExit) as stop:
         parse([command, "--help"])
     assert stop.value.code == 0
@@ -49,11 +49,11 @@ def test_every_command_explains_itself(command, capsys):
         (["test_navigation", "--goals", "1 2 3"], 900.0),
     ],
 )
-def test_what_a_person_ends_has_no_time_out_of_its_own(arguments, expected):
+def test_interactive_commands_have_no_default_time_out(arguments, expected):
     assert parse(arguments).time_limit == expected
 
 
-def test_a_rehearsal_ends_by_simulated_time():
+def test_a_headless_run_is_limited_by_simulated_time():
     assert parse(["rehearse"]).timeout == 600.0
 
 
@@ -67,7 +67,7 @@ def test_a_missing_file_is_named_and_nothing_is_started(option, tmp_path, capsys
 
 
 @pytest.mark.parametrize("command", ["home_service", "rehearse", "test_navigation"])
-def test_a_planner_that_is_not_there_is_named_and_nothing_is_started(command, tmp_path, monkeypatch, capsys):
+def test_an_unknown_planner_is_named_and_nothing_is_started(command, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     goals = ["--goals", "1 0 0"] if command == "test_navigation" else []
     assert main([command, *goals, "--planner", "MppiPlannerROS"]) == 2
@@ -77,7 +77,7 @@ def test_a_planner_that_is_not_there_is_named_and_nothing_is_started(command, tm
 
 
 @pytest.mark.parametrize("command", commands.FOLDER.names())
-def test_nonsense_is_answered_in_the_name_of_the_script_that_was_called(command, capsys):
+def test_an_unknown_option_is_reported_with_the_name_of_the_script(command, capsys):
     needed = {
         "compare": ["a", "b"],
         "new_plugin": ["mine", "local_planner"],
@@ -93,7 +93,7 @@ def test_nonsense_is_answered_in_the_name_of_the_script_that_was_called(command,
     assert told.endswith(f"{command}.sh: error: unrecognized arguments: --nonsense\n")
 
 
-def test_every_command_has_a_class_that_says_what_it_is_for_and_runs(capsys):
+def test_every_command_has_a_class_with_a_summary_and_a_run_method(capsys):
     with pytest.raises(SystemExit) as stop:
         parse(["--help"])
     assert stop.value.code == 0
@@ -163,7 +163,7 @@ def own(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(str(tmp_path))
 
 
-def test_a_command_of_other_people_is_called_by_its_dotted_name(own, capsys):
+def test_a_custom_command_is_called_by_its_dotted_name(own, capsys):
     assert main(["own_commands.greeting/Greet", "--name", "robot"]) == 3
     assert capsys.readouterr().out == "hello robot\n"
     with pytest.raises(SystemExit):
@@ -181,6 +181,6 @@ def test_a_command_of_other_people_is_called_by_its_dotted_name(own, capsys):
         ("greeting/Greet", "my_package.my_module/MyCommand"),
     ],
 )
-def test_what_is_no_command_of_other_people_is_refused(own, name, why, capsys):
+def test_a_dotted_name_that_is_no_command_is_refused(own, name, why, capsys):
     assert main([name]) == 2
     assert why in capsys.readouterr().err

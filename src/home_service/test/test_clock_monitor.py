@@ -22,7 +22,7 @@ def reason_of(monitor, seconds=2.0):
     return monitor.reason
 
 
-def test_time_that_stands_still_is_told_once_with_the_reason(paused):
+def test_a_stopped_clock_is_logged_once_with_the_reason(paused):
     logged = []
     monitor = ClockMonitor(logged.append, patience=0.05)
     monitor.on_clock(12.3)
@@ -32,7 +32,7 @@ def test_time_that_stands_still_is_told_once_with_the_reason(paused):
     assert logged == [monitor.reason]
 
 
-def test_time_that_goes_on_is_nothing_to_tell(paused):
+def test_a_running_clock_has_no_reason(paused):
     logged = []
     monitor = ClockMonitor(logged.append, patience=0.05)
     monitor.check()
@@ -43,7 +43,7 @@ def test_time_that_goes_on_is_nothing_to_tell(paused):
     assert len(logged) == 1
 
 
-def test_before_there_is_time_nothing_stands_still(paused):
+def test_a_clock_that_was_never_published_is_not_reported(paused):
     monitor = ClockMonitor(pytest.fail, patience=0.0)
     assert reason_of(monitor, 0.1) is None
 
@@ -53,7 +53,7 @@ def answering(monkeypatch, is_paused):
     monkeypatch.setattr(clock_monitor, "call_service", lambda *_: answer)
 
 
-def test_those_that_the_simulator_waits_for_are_named(monkeypatch):
+def test_nodes_that_the_simulator_waits_for_are_named(monkeypatch):
     answering(monkeypatch, is_paused=False)
     monitor = ClockMonitor(lambda line: None, patience=0.05)
     monitor.on_clock(12.3)
@@ -62,7 +62,7 @@ def test_those_that_the_simulator_waits_for_are_named(monkeypatch):
     assert reason_of(monitor) == reason
 
 
-def test_a_pause_is_a_pause_whoever_was_waited_for(monkeypatch):
+def test_a_pause_is_reported_even_if_nodes_were_waited_for(monkeypatch):
     answering(monkeypatch, is_paused=True)
     assert why_clock_stopped(["amcl"]) == "the simulation is paused"
 

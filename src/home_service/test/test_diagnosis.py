@@ -35,7 +35,7 @@ def test_a_graph_in_which_all_is_well_has_no_problem():
     assert as_json(healthy_graph())["healthy"]
 
 
-def test_where_nothing_runs_there_is_nothing_wrong_and_nothing_healthy():
+def test_without_a_graph_there_are_no_problems_and_it_is_not_healthy():
     assert problems(GraphSnapshot()) == []
     assert not as_json(GraphSnapshot())["healthy"]
     assert "nothing is running" in as_text(GraphSnapshot())[-1]
@@ -87,19 +87,19 @@ def two_parents(graph):
         (two_parents, "2 trees, with the roots base_footprint, map"),
     ],
 )
-def test_each_harm_is_told(harm, sentence):
+def test_each_problem_is_reported(harm, sentence):
     graph = healthy_graph()
     harm(graph)
     assert any(sentence in problem for problem in problems(graph)), problems(graph)
     assert any(sentence in line for line in as_text(graph))
 
 
-def test_chains_of_frames_end_even_in_a_circle():
+def test_frame_chains_end_even_in_a_cycle():
     parents = healthy_graph().parents
     assert frame_chain(parents, "laser") == ["map", "odom", "base_link", "laser"]
     assert frame_branches(parents) == ["map -> odom -> base_link -> laser, wheel"]
     assert len(frame_chain({"a": {"b"}, "b": {"a"}}, "a")) <= 4
 
 
-def test_everything_found_fits_into_json():
+def test_a_snapshot_can_be_written_as_json():
     assert json.loads(json.dumps(as_json(healthy_graph())))["parents"]["odom"] == ["map"]

@@ -4,7 +4,7 @@ from home_service.judging.goal_log import GoalLog
 from planar import Pose2
 
 
-def test_a_goal_is_told_when_it_comes_and_when_it_is_reached():
+def test_a_goal_is_logged_when_it_is_sent_and_when_it_is_reached():
     log = GoalLog()
     assert log.add("a", "map", Pose2(2.0, 3.0, 0.5)) == "goal 1 (2.00, 3.00, 0.50): on the way"
     line = log.end("a", True, "Goal reached.", Pose2(2.0, 3.04, 0.5))
@@ -13,7 +13,7 @@ def test_a_goal_is_told_when_it_comes_and_when_it_is_reached():
     assert log.result_fields() == {"goals": [told]}
 
 
-def test_why_a_goal_was_given_up_is_told_and_recorded():
+def test_the_reason_of_a_failed_goal_is_logged_and_recorded():
     log = GoalLog()
     log.add("a", "map", Pose2())
     log.add("b", "map", Pose2(1.0))
@@ -21,7 +21,7 @@ def test_why_a_goal_was_given_up_is_told_and_recorded():
     assert [record["outcome"] for record in log.result_fields()["goals"]] == ["preempted", "open"]
 
 
-def test_goals_that_are_named_only_when_they_are_taken_end_in_their_order():
+def test_goals_without_an_id_end_in_the_order_in_which_they_were_sent():
     log = GoalLog()
     log.add("", "map", Pose2(1.0))
     log.add("", "map", Pose2(2.0))
@@ -30,7 +30,7 @@ def test_goals_that_are_named_only_when_they_are_taken_end_in_their_order():
     assert log.end("y", True, "", Pose2(2.0)) == "goal 2 (2.00, 0.00, 0.00): reached, truly 0.000 m from it"
 
 
-def test_what_is_not_known_or_known_already_is_not_told():
+def test_unknown_results_and_repeated_goals_are_not_logged():
     log = GoalLog()
     log.add("a", "map", Pose2())
     assert log.add("a", "map", Pose2()) is None

@@ -40,7 +40,7 @@ def graph(monkeypatch):
     monkeypatch.setenv("ROS_MASTER_URI", "")
 
 
-def test_a_node_that_goes_while_the_graph_is_examined_is_left_out():
+def test_a_node_that_exits_during_the_inspection_is_left_out():
     snapshot = GraphSnapshot()
     graph_inspection._inspect(snapshot, "http://127.0.0.1:2", 0.0)
     assert snapshot.nodes == [NodeState("/there", is_alive=True)]

@@ -28,24 +28,24 @@ def test_a_seed_repeats_the_whole_mission_bit_for_bit_and_another_does_not():
     assert other.verdict.success, other.verdict.reason
 
 
-def test_scans_that_come_late_are_seen_from_where_the_robot_was():
+def test_delayed_scans_are_used_at_the_pose_of_their_stamp():
     run = rehearsed(5, Fault("scan_late", start=8.0, strength=0.5))
     assert run.verdict.success, run.verdict.reason
 
 
-def test_dead_odometry_is_not_trusted_again_only_because_the_robot_was_stopped_for_it():
+def test_stopped_odometry_stays_implausible_while_the_robot_is_stopped():
     run = rehearsed(5001, Fault("odometry_frozen", start=8.0))
     assert "trustworthy sensor (odometry: it stands still" in run.verdict.reason
     assert run.simulated_seconds < 60.0
 
 
 @pytest.mark.parametrize("seed, start", [(1, 8.0), (1, 8.9), (5002, 8.0), (5013, 8.0)])
-def test_a_robot_that_is_carried_away_before_it_arrives_claims_nothing_that_is_not_so(seed, start):
+def test_a_robot_that_is_kidnapped_before_it_arrives_reports_no_false_delivery(seed, start):
     run = rehearsed(seed, Fault("kidnapped", start=start, strength=0.5))
     assert run.verdict.success, run.verdict.reason
 
 
-def test_a_mission_that_takes_too_long_fails_and_says_so():
+def test_a_mission_that_takes_too_long_fails_with_that_reason():
     errand = errand_mission(*load_pickup_and_dropoff(MAP / "zones.yaml"))
     world, grid = load_world(MAP / "home.world"), load_map(MAP / "home.yaml")
     run = HeadlessMission(world, robot_named("turtlebot_lidar"), grid, errand, seed=7).run(
@@ -66,7 +66,7 @@ deliveries:
 """
 
 
-def test_a_mission_is_repeated_bit_for_bit_with_a_place_that_is_served_from_its_alternative():
+def test_a_mission_with_an_alternative_pose_is_repeated_bit_for_bit():
     world, grid = load_world(MAP / "home.world"), load_map(MAP / "home.yaml")
     robot, mission = robot_named("turtlebot_lidar"), parse_mission(MISSION, grid=grid)
     first, again = (HeadlessMission(world, robot, grid, mission, seed=1003).run(120.0) for _ in range(2))
@@ -75,6 +75,6 @@ def test_a_mission_is_repeated_bit_for_bit_with_a_place_that_is_served_from_its_
     assert [record.attempts for record in first.mission_record.deliveries] == [3, 3]
 
 
-def test_the_page_of_faults_ends_as_it_would_be_made_anew():
+def test_the_page_of_faults_has_the_generated_text():
     page = Path(__file__).parents[3] / "docs" / "reports" / "faults.md"
     assert page.read_text("utf-8").endswith(TAIL)

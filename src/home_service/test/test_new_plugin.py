@@ -11,7 +11,9 @@ from planar import SettingsError
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_what_is_laid_out_is_found_by_its_name_and_keeps_its_contract(kind, tmp_path, monkeypatch, capsys):
+def test_a_generated_plugin_is_found_by_its_name_and_fulfils_its_contract(
+    kind, tmp_path, monkeypatch, capsys
+):
     assert NewPlugin(f"my_{kind}", kind, tmp_path).run() == 0
     monkeypatch.syspath_prepend(str(tmp_path / f"my_{kind}/src"))
     assert f"my_{kind}.{kind}/My{kind.title().replace('_', '')}" in capsys.readouterr().out
@@ -23,12 +25,12 @@ def test_what_is_laid_out_is_found_by_its_name_and_keeps_its_contract(kind, tmp_
     importlib.invalidate_caches()
 
 
-def test_every_kind_has_something_to_begin_with():
+def test_every_kind_of_plugin_has_a_template():
     assert sorted(KINDS) == sorted(path.stem for path in TEMPLATES.glob("*.py"))
 
 
 @pytest.mark.parametrize("name", ["My Planner", "2fast", "planner-1"])
-def test_what_is_no_name_of_a_package_is_refused(name, tmp_path):
+def test_an_invalid_package_name_is_refused(name, tmp_path):
     with pytest.raises(SettingsError, match="is no name of a package"):
         NewPlugin(name, "local_planner", tmp_path).run()
     assert not list(tmp_path.iterdir())

@@ -42,7 +42,7 @@ def met(robot_v, person_v, yaw=0.0):
         *("catches up", "flees", "backs into"),
     ),
 )
-def test_who_came_on_faster_is_at_fault(robot_v, person_v, yaw, is_robot_at_fault):
+def test_the_faster_of_the_two_is_at_fault(robot_v, person_v, yaw, is_robot_at_fault):
     held, people_at_fault = met(robot_v, person_v, yaw)
     assert held == (["anna::link", "wall::link"] if is_robot_at_fault else ["wall::link"])
     assert people_at_fault == ([] if is_robot_at_fault else ["anna::link"])

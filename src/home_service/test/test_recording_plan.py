@@ -39,7 +39,7 @@ def test_the_world_and_the_robot_are_those_of_the_run(run_folder):
         json.dumps({"world": "\0"}),
     ],
 )
-def test_what_cannot_be_used_is_left_out(run_folder, content):
+def test_unusable_results_are_ignored(run_folder, content):
     (run_folder / "result.json").write_text(content)
     assert told_of(run_folder) == {}
 

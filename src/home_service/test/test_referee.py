@@ -32,7 +32,7 @@ def arrival(stamp):
     return message
 
 
-def test_an_arrival_is_judged_by_the_truth_of_its_moment_even_if_that_comes_later(referee):
+def test_an_arrival_is_judged_by_the_truth_at_its_stamp_even_if_that_arrives_later(referee):
     referee._on_truth(truth(1.0, 1.6))
     referee._on_mission(arrival(2.0))
     assert referee.mission_record.deliveries == []
@@ -50,7 +50,7 @@ def test_an_arrival_is_judged_by_where_the_robot_stood_not_by_where_it_is(refere
     assert referee.mission_record.deliveries[0].pickup_error == pytest.approx(0.01)
 
 
-def test_the_marker_of_an_object_may_be_taken_away_and_shown_anew(referee):
+def test_the_marker_of_an_object_may_be_deleted_and_shown_again(referee):
     referee._on_mission(arrival(0.0))
     for action, is_locked, x in (
         (Marker.ADD, False, 2.0),
@@ -63,7 +63,7 @@ def test_the_marker_of_an_object_may_be_taken_away_and_shown_anew(referee):
     assert referee.mission_record.markers == ["letter at hall", "letter carried"]
 
 
-def test_markers_that_never_come_are_not_waited_for_without_end(referee, monkeypatch):
+def test_missing_markers_are_not_waited_for_without_end(referee, monkeypatch):
     wall = [100.0]
     monkeypatch.setattr("time.monotonic", lambda: wall[0])
     delivered = arrival(0.0)
@@ -98,7 +98,7 @@ def marker_of_lamp(x):
     return message
 
 
-def test_places_that_only_a_mission_which_is_sent_knows_are_judged_by(referee):
+def test_places_defined_by_a_sent_mission_are_used(referee):
     referee._on_goal(DeliverActionGoal(goal=DeliverGoal(mission=MISSION)))
     referee._on_truth(truth(1.0, 6.9))
     referee._on_mission(moment(1.0, DeliveryState.PICKING_UP))
@@ -107,14 +107,14 @@ def test_places_that_only_a_mission_which_is_sent_knows_are_judged_by(referee):
     assert referee.mission_record.markers == ["lamp at attic"]
 
 
-def test_a_marker_between_places_that_are_not_known_is_told_by_the_nearest_that_is(referee):
+def test_a_marker_far_from_unknown_places_is_assigned_to_the_nearest_known_one(referee):
     referee._on_truth(truth(1.0, 6.9))
     referee._on_mission(moment(1.0, DeliveryState.PICKING_UP))
     referee._on_marker(marker_of_lamp(4.9))
     assert referee.mission_record.markers == ["lamp at door"]
 
 
-def test_a_mission_that_cannot_be_understood_changes_nothing(referee):
+def test_an_invalid_mission_changes_nothing(referee):
     referee._on_goal(DeliverActionGoal(goal=DeliverGoal(mission="places: 3")))
     assert referee.mission_record.deliveries == []
 
@@ -135,7 +135,7 @@ def test_a_delivery_that_is_sent_again_by_the_same_name_is_judged_again(referee)
     assert second.pickup_error == pytest.approx(0.04)
 
 
-def test_a_marker_that_comes_before_its_mission_is_told_by_the_ends_of_its_delivery(referee):
+def test_a_marker_that_arrives_before_its_mission_is_assigned_when_the_mission_is_known(referee):
     referee._on_marker(marker_of_lamp(4.9))
     referee._on_goal(DeliverActionGoal(goal=DeliverGoal(mission=MISSION)))
     referee._on_mission(moment(1.0, DeliveryState.FETCHING))

@@ -8,7 +8,7 @@ from home_service.reproducing import reproduce
 from planar import SettingsError
 
 
-def test_a_run_of_another_packages_command_is_left_to_that(tmp_path):
+def test_a_command_of_another_package_is_not_run(tmp_path):
     result = {"command": "play", "arguments": ["home errand", "--seed", "3"], "hash": "0", "versions": {}}
     (tmp_path / "result.json").write_text(json.dumps(result))
     (tmp_path / "trace.txt").write_text("")
@@ -18,7 +18,7 @@ def test_a_run_of_another_packages_command_is_left_to_that(tmp_path):
         reproduce(tmp_path)
 
 
-def test_another_processor_is_told_before_the_run_is_made_again(tmp_path, capsys):
+def test_another_processor_is_reported_before_the_run_is_repeated(tmp_path, capsys):
     result = {"command": "play", "arguments": [], "hash": "0", "versions": {"processor": "486DX2"}}
     (tmp_path / "result.json").write_text(json.dumps(result))
     (tmp_path / "trace.txt").write_text("")

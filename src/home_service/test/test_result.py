@@ -52,19 +52,19 @@ def test_the_result_of_an_errand_follows_the_schema(referee, tmp_path):
     assert written["deliveries"][0]["pickup_error"] == 0.1235
 
 
-def test_every_finding_has_its_place_in_the_schema(referee, monkeypatch):
+def test_every_result_field_is_in_the_schema(referee, monkeypatch):
     found = {**referee.result_fields(), **FollowMonitor("follower").result_fields(), **summary(RunRecord())}
     assert set(found) <= set(SCHEMA["properties"])
 
 
 @pytest.mark.parametrize("name", commands.FOLDER.names())
-def test_what_a_run_is_told_has_its_place_in_the_schema(name):
+def test_the_options_of_a_run_are_in_the_schema(name):
     kind = commands.FOLDER.find(name)
     if issubclass(kind, RunOptions):
         assert set(kind().result_fields()) <= set(SCHEMA["properties"])
 
 
-def test_a_judge_that_never_began_has_found_nothing():
+def test_a_referee_that_was_not_started_has_no_result_fields():
     assert Referee({}, log=lambda line: None).result_fields() == {}
 
 
@@ -75,7 +75,7 @@ def test_a_result_that_cannot_be_written_has_a_reason(tmp_path):
     assert result.all_missing == [result.gap]
 
 
-def test_a_result_that_tells_less_than_is_known_does_not_stay(tmp_path, monkeypatch):
+def test_an_outdated_result_is_deleted(tmp_path, monkeypatch):
     result = ResultFile(tmp_path)
     result.write()
     monkeypatch.setattr(run_folder, "write_atomically", full_disk)
@@ -84,7 +84,7 @@ def test_a_result_that_tells_less_than_is_known_does_not_stay(tmp_path, monkeypa
     assert result.gap == "result.json: cannot be written (No space left on device)"
 
 
-def test_the_result_before_makes_room_for_the_one_to_come(tmp_path, monkeypatch):
+def test_the_old_result_is_deleted_to_make_room_for_the_new_one(tmp_path, monkeypatch):
     """A disk with room for one."""
     result = ResultFile(tmp_path)
     result.write()
@@ -98,7 +98,7 @@ def test_the_result_before_makes_room_for_the_one_to_come(tmp_path, monkeypatch)
     assert result.gap is None
 
 
-def test_what_is_missing_is_told_with_each_reason_once():
+def test_missing_files_are_grouped_by_reason():
     full = "cannot be written (No space left on device)"
     missing = [f"run.png: {full}", "bag: 2.bag was not closed", f"report.html: {full}", f"run.png: {full}"]
     assert grouped_by_reason(missing) == [f"run.png, report.html: {full}", "bag: 2.bag was not closed"]

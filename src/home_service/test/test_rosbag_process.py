@@ -9,7 +9,7 @@ from home_service.ros.bags.rosbag_process import RosbagProcess
 START_SECONDS = 30.0
 
 
-def test_a_recorder_that_does_not_end_has_ended_when_its_bags_are_looked_at(tmp_path, monkeypatch):
+def test_a_recorder_that_does_not_exit_is_killed_before_its_bags_are_checked(tmp_path, monkeypatch):
     recorder, bags = tmp_path / "record", tmp_path / "bag"
     recorder.write_text(f"#!/bin/sh\ntrap '' INT\ntouch {bags}/inputs_0.bag.active\nexec sleep 60\n")
     recorder.chmod(0o755)

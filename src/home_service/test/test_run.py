@@ -78,7 +78,7 @@ def full_disk(path, data):
     raise FileWriteError(f"{path}: cannot be written (No space left on device)")
 
 
-def test_a_trace_that_cannot_be_written_is_missing_and_no_more(run, monkeypatch):
+def test_a_trace_that_cannot_be_written_is_only_listed_as_missing(run, monkeypatch):
     monkeypatch.setattr(trace, "write_atomically", full_disk)
     with run:
         assert run.conclude(DONE) == 0
@@ -98,7 +98,7 @@ def test_a_run_that_cannot_write_its_result_has_failed(run, monkeypatch):
     assert not (run.folder / "result.json").exists()
 
 
-def test_a_disk_that_becomes_full_at_last_makes_an_error_of_a_success(run, monkeypatch):
+def test_a_disk_that_becomes_full_at_the_end_turns_a_success_into_an_error(run, monkeypatch):
     with pytest.raises(
         ResultError, match=r"result\.json: cannot be written \(No space left on device\)"
     ), run:
@@ -108,7 +108,7 @@ def test_a_disk_that_becomes_full_at_last_makes_an_error_of_a_success(run, monke
     assert not (run.folder / "result.json").exists()
 
 
-def test_a_run_that_failed_anyhow_is_no_error_besides(run, monkeypatch):
+def test_a_failed_run_without_a_result_raises_no_second_error(run, monkeypatch):
     monkeypatch.setattr(run_folder, "write_atomically", full_disk)
     with pytest.raises(RuntimeError, match="a fault of ours"), run:
         raise RuntimeError("a fault of ours")

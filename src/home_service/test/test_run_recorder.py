@@ -48,7 +48,7 @@ def serve(callbacks, deliveries):
         callbacks["visualization_marker"](marker)
 
 
-def test_all_of_a_mission_is_kept(subscribed):
+def test_a_mission_is_recorded_completely(subscribed):
     recorder, callbacks = subscribed
     drive(callbacks, 600)
     serve(callbacks, 20)
@@ -61,7 +61,7 @@ def test_all_of_a_mission_is_kept(subscribed):
     assert [plan[0, 0] for plan in record.plans] == [goal.x for goal in record.goals]
 
 
-def test_of_what_a_run_serves_for_hours_no_more_is_kept_than_the_latest(subscribed):
+def test_only_the_latest_events_of_a_long_run_are_kept(subscribed):
     recorder, callbacks = subscribed
     serve(callbacks, 2000)
     record = recorder.record()
@@ -72,7 +72,7 @@ def test_of_what_a_run_serves_for_hours_no_more_is_kept_than_the_latest(subscrib
     assert record.plans[-1][0, 0] == record.goals[-1].x == 1999.0
 
 
-def test_a_way_of_hours_is_kept_from_its_beginning_with_fewer_samples(subscribed):
+def test_a_long_trajectory_is_kept_whole_with_fewer_samples(subscribed):
     recorder, callbacks = subscribed
     drive(callbacks, 2 * 3600)
     truth = recorder.record().truth

@@ -17,13 +17,13 @@ def sampled(seconds, most, rate=50.0):
     return samples.rows(), largest
 
 
-def test_of_a_short_series_ten_a_second_are_kept():
+def test_a_short_series_keeps_ten_samples_a_second():
     rows, _ = sampled(10.0, most=100)
     assert np.allclose(rows[:, 0], np.arange(100) / 10.0)
     assert np.allclose(rows[:, 1], 2.0 * rows[:, 0])
 
 
-def test_of_a_long_series_no_more_are_kept_and_they_span_all_of_it_evenly():
+def test_a_long_series_is_thinned_evenly():
     rows, largest = sampled(130.0, most=100)
     assert largest <= 100
     assert rows[0, 0] == 0.0 and rows[-1, 0] > 127.0
@@ -32,5 +32,5 @@ def test_of_a_long_series_no_more_are_kept_and_they_span_all_of_it_evenly():
     assert np.isclose(np.median(steps), 1.6)
 
 
-def test_there_may_be_none():
+def test_a_series_may_be_empty():
     assert Samples(4).rows().shape == (0, 4)

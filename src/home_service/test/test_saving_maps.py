@@ -36,7 +36,7 @@ def test_a_map_saver_that_does_not_end_is_an_error_of_one_line(rosrun, run, monk
         mapping.save_map(run, None)
 
 
-def test_a_map_saver_without_a_map_says_so(rosrun, run):
+def test_a_map_saver_without_a_map_is_reported(rosrun, run):
     rosrun("echo error: no map on /map within 30 s >&2; exit 1")
     with pytest.raises(LaunchError, match="map_saver: error: no map on /map within 30 s"):
         mapping.save_map(run, None)
@@ -53,7 +53,7 @@ def test_a_map_saver_ends_with_the_graph(rosrun, run):
     assert time.monotonic() - started < 30.0
 
 
-def test_what_failed_before_the_map_could_not_be_saved_is_told_first_and_once(rosrun, run):
+def test_an_earlier_failure_is_reported_first_and_once(rosrun, run):
     rosrun("echo error: no map >&2; exit 1")
     with pytest.raises(LaunchError, match="^explore: nothing is free; map_saver: error: no map$"):
         mapping.save_map(run, None, "explore: nothing is free")

@@ -63,7 +63,7 @@ def long_trace(**how):
     return trace
 
 
-def test_what_a_long_run_has_put_aside_is_written_as_ever():
+def test_spilled_entries_of_a_long_run_are_written():
     trace = long_trace(max_in_memory=100)
     assert len(trace._entries) <= 100 and len(trace._outcomes) <= 5
     whole = long_trace(max_in_memory=1_000_000)
@@ -72,7 +72,7 @@ def test_what_a_long_run_has_put_aside_is_written_as_ever():
     assert trace.content() == whole.content(), "a second time"
 
 
-def test_before_there_is_a_goal_nothing_is_kept_for_long():
+def test_entries_before_the_first_goal_are_dropped():
     trace = Trace(max_in_memory=100)
     for second in range(1000):
         trace.add(TraceEntry(second * SECOND, "/truth", "/node", "stands"))
@@ -80,7 +80,7 @@ def test_before_there_is_a_goal_nothing_is_kept_for_long():
     assert trace.content() == b""
 
 
-def test_a_long_run_without_room_for_what_is_put_aside_has_no_trace(monkeypatch):
+def test_a_long_run_that_cannot_spill_has_no_trace(monkeypatch):
     def full_disk(*_arguments, **_named):
         raise OSError(errno.ENOSPC, "No space left on device")
 
@@ -95,13 +95,13 @@ def test_a_run_without_goals_has_no_trace():
     assert Trace().content() == b""
 
 
-def test_what_is_written_is_what_is_read(tmp_path):
+def test_a_written_trace_is_read_back(tmp_path):
     trace = trace_of([(2, "a"), (3, "b")])
     write_trace(tmp_path, trace.content())
     assert read_trace(tmp_path) == trace.lines()
 
 
-def test_two_traces_part_at_the_first_entry_that_only_one_has():
+def test_two_traces_differ_at_the_first_entry_that_only_one_has():
     assert first_difference(["a", "b"], ["a", "b"]) is None
     assert first_difference(["a", "b"], ["a", "c"]) == TraceDifference("b", "c")
     assert first_difference(["a"], ["a", "c"]) == TraceDifference(None, "c")

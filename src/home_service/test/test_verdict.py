@@ -34,7 +34,7 @@ def test_a_proven_delivery_is_a_success():
         ({"failure": "roslaunch ended"}, "roslaunch ended"),
     ],
 )
-def test_whatever_is_missing_is_a_failure_that_says_what(change, reason):
+def test_missing_evidence_is_a_failure_with_a_reason(change, reason):
     mission_record = good_ledger()
     for name, value in change.items():
         setattr(mission_record, name, value)
@@ -65,6 +65,6 @@ def test_the_markers_of_a_mission_go_with_their_objects():
     assert judge(mission_record, {ERRAND, OBJECTS}).success
 
 
-def test_a_cancelled_delivery_is_not_held_against_the_others():
+def test_a_cancelled_delivery_does_not_fail_the_others():
     mission_record = MissionRecord([record(), record(state="cancelled")], final_state="delivered")
     assert judge(mission_record, {ERRAND}).success

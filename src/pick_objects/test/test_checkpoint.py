@@ -37,7 +37,7 @@ def carry(errand, now=0.0):
     assert errand.job.stage is DeliveryStage.CARRYING
 
 
-def test_what_was_on_the_robot_is_brought_where_it_is_wanted():
+def test_an_object_on_the_robot_is_delivered_after_a_restart():
     errand = Errand(MISSION)
     carry(errand)
     again = taken_up(errand)
@@ -48,7 +48,7 @@ def test_what_was_on_the_robot_is_brought_where_it_is_wanted():
 
 
 @pytest.mark.parametrize("event", [None, GoalReached()])
-def test_what_was_not_yet_on_the_robot_is_fetched_anew(event):
+def test_an_object_that_was_not_on_the_robot_is_fetched_again(event):
     errand = Errand(MISSION)
     errand.advance(0.0)
     errand.advance(1.0, event)
@@ -57,7 +57,7 @@ def test_what_was_not_yet_on_the_robot_is_fetched_anew(event):
     assert again.job.attempts == 2
 
 
-def test_what_has_been_delivered_stays_so_to_the_end():
+def test_a_completed_delivery_stays_completed_after_a_restart():
     errand = Errand(MISSION)
     carry(errand)
     errand.advance(20.0, GoalReached())
@@ -67,11 +67,11 @@ def test_what_has_been_delivered_stays_so_to_the_end():
     assert again.advance(60.0, GoalReached()) == FinishTask(True, "2 of 2 delivered")
 
 
-def test_a_delivery_that_was_added_is_not_forgotten():
+def test_an_added_delivery_survives_a_restart():
     errand = Errand(MISSION)
     errand.add(Delivery("", "cup", "b", "c"))
     assert [job.delivery.name for job in taken_up(errand).jobs] == ["first", "second", "delivery 3"]
 
 
-def test_a_record_of_another_mission_is_of_no_use():
+def test_a_checkpoint_of_another_mission_is_ignored():
     assert resume_errand(errand_mission(A, B), checkpoint_of(Errand(MISSION))) is None

@@ -9,7 +9,7 @@ pytest.importorskip("rospy")
 UNUSED = "http://127.0.0.1:19999"
 
 
-def test_without_a_master_it_says_so_and_ends(tmp_path):
+def test_without_a_master_the_program_reports_it_and_exits(tmp_path):
     mission = tmp_path / "mission.yaml"
     mission.write_text("deliveries: []\n")
     script = "import sys; from pick_objects.ros.deliver_client import main; sys.exit(main(sys.argv))"

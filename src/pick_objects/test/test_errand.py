@@ -40,7 +40,7 @@ def test_the_robot_is_sent_to_pickup_and_after_five_seconds_there_to_dropoff():
     assert task.advance(41.0) is None
 
 
-def test_a_robot_that_is_carried_away_while_it_picks_up_goes_back():
+def test_a_robot_that_is_displaced_while_it_picks_up_returns():
     task = errand(attempts=2)
     task.advance(0.0)
     task.advance(20.0, GoalReached())
@@ -52,7 +52,7 @@ def test_a_robot_that_is_carried_away_while_it_picks_up_goes_back():
     assert task.advance(31.0) == DriveToPlace(DROPOFF, 1)
 
 
-def test_who_is_carried_away_again_and_again_gives_up():
+def test_a_robot_that_is_displaced_repeatedly_gives_up():
     task = errand(attempts=2)
     task.advance(0.0)
     for now in (10.0, 20.0):
@@ -84,7 +84,7 @@ def test_the_last_refusal_ends_the_errand_with_place_and_reason():
 TAKEN_OVER = GoalFailed("another goal was received", is_preempted=True)
 
 
-def test_goals_that_others_take_over_are_sent_again_and_are_no_attempts():
+def test_goals_preempted_by_other_clients_are_sent_again_and_are_no_attempts():
     task = errand(attempts=1, retry_seconds=1.0, goal_timeout=30.0)
     task.advance(0.0)
     for now in range(2, 30, 2):
@@ -94,7 +94,7 @@ def test_goals_that_others_take_over_are_sent_again_and_are_no_attempts():
     assert task.state is ErrandState.PICKING_UP
 
 
-def test_who_never_gets_the_robot_for_himself_gives_up_in_the_end():
+def test_an_errand_that_is_always_preempted_gives_up_in_the_end():
     task = errand(attempts=1, retry_seconds=1.0, goal_timeout=30.0)
     task.advance(0.0)
     task.advance(29.0, TAKEN_OVER)
@@ -109,7 +109,7 @@ def test_a_goal_that_takes_too_long_counts_as_refused():
     assert "not reached within 30 s" in task.advance(30.1).reason
 
 
-def test_attempts_are_counted_for_each_place_anew():
+def test_attempts_are_counted_separately_for_each_place():
     task = errand(attempts=2, retry_seconds=0.0, pickup_seconds=0.0)
     task.advance(0.0)
     task.advance(1.0, GoalFailed("x"))
@@ -118,7 +118,7 @@ def test_attempts_are_counted_for_each_place_anew():
     assert task.advance(2.0) == DriveToPlace(DROPOFF, 1)
 
 
-def test_senseless_patience_is_refused():
+def test_invalid_settings_are_refused():
     with pytest.raises(SettingsError, match="attempts must be at least 1"):
         errand(attempts=0)
 
@@ -190,25 +190,25 @@ def test_an_object_that_could_not_be_delivered_is_left_and_not_fetched_where_it_
     assert task.jobs[1].reason == "cup is not at pickup"
 
 
-def test_what_waits_for_a_failed_delivery_fails_too():
+def test_a_delivery_that_depends_on_a_failed_one_fails_too():
     late = Delivery("late", "letter", "dropoff", "kitchen", after=("tea",))
     task = mission(late, TEA, on_failure="continue")
     play(task, [PICKUP.pose])
     assert [job.reason for job in task.jobs if job.delivery is late] == ["tea was not delivered"]
 
 
-def test_the_shortest_order_is_found_by_measured_ways_and_keeps_what_must_come_first():
+def test_the_shortest_order_uses_measured_paths_and_respects_dependencies():
     task = mission(TEA, POST, BACK, order="shortest")
     order = task.advance(0.0)
     assert isinstance(order, MeasurePathLengths)
-    assert order.ways[:3] == ((None, KITCHEN.pose), (None, DROPOFF.pose), (None, PICKUP.pose))
+    assert order.legs[:3] == ((None, KITCHEN.pose), (None, DROPOFF.pose), (None, PICKUP.pose))
     far_tea = [9.0, 1.0, 1.0, *[5.0] * 9]
     first = task.advance(1.0, PathLengthsMeasured(tuple(far_tea)))
     assert first == DriveToPlace(DROPOFF, 1)
     assert [job.delivery.name for job in task.jobs] == ["post", "tea", "back"]
 
 
-def test_a_cancelled_delivery_is_left_out_and_the_rest_is_made():
+def test_a_cancelled_delivery_is_skipped_and_the_others_are_made():
     task = mission(TEA, POST)
     task.advance(0.0)
     task.advance(1.0, GoalReached())
@@ -245,7 +245,7 @@ def test_a_mission_can_be_cancelled_in_every_state(steps):
         task.cancel()
 
 
-def test_a_delivery_can_be_added_and_senseless_ones_are_refused():
+def test_a_delivery_can_be_added_and_invalid_ones_are_refused():
     task = mission(TEA)
     task.advance(0.0)
     assert task.add(Delivery("", "letter", "dropoff", "kitchen")).name == "delivery 2"

@@ -82,7 +82,7 @@ class ErrandHistories(RuleBasedStateMachine):
         self.advance()
 
     @rule(is_set_back=st.booleans())
-    def the_clock_jumps_forth_and_back(self, is_set_back):
+    def the_clock_jumps_ahead_and_back(self, is_set_back):
         self.now += 1e6
         self.advance()
         self.now -= 1e6 + 50.0 * is_set_back
@@ -99,14 +99,14 @@ class ErrandHistories(RuleBasedStateMachine):
         self.advance(event)
 
     @precondition(lambda self: isinstance(self.goal, MeasurePathLengths))
-    @rule(is_there_a_way=st.booleans())
-    def the_ways_are_measured(self, is_there_a_way):
-        lengths = [1.0 + number if is_there_a_way else None for number in range(len(self.goal.ways))]
+    @rule(is_reachable=st.booleans())
+    def the_path_lengths_are_measured(self, is_reachable):
+        lengths = [1.0 + number if is_reachable else None for number in range(len(self.goal.legs))]
         self.goal = None
         self.advance(PathLengthsMeasured(tuple(lengths)))
 
     @rule(name=st.sampled_from(("", "", *(delivery.name for delivery in DELIVERIES), "milk")))
-    def somebody_cancels(self, name):
+    def a_delivery_is_cancelled(self, name):
         try:
             self.errand.cancel(name)
         except MissionError:
@@ -115,14 +115,14 @@ class ErrandHistories(RuleBasedStateMachine):
         assert {job.stage for job in named} <= set(ENDED)
 
     @rule(name=st.sampled_from(("cup", "vase")), source=st.sampled_from(sorted(PLACES)))
-    def somebody_adds(self, name, source):
+    def a_delivery_is_added(self, name, source):
         try:
             self.errand.add(Delivery("", name, source, "hall"))
         except MissionError:
             assert self.end is not None or source == "hall"
 
     @rule()
-    def the_node_dies_and_comes_back(self):
+    def the_node_dies_and_is_respawned(self):
         told = self.errand.progress, self.errand.object_locations
         again = resume_errand(self.errand.mission, json.loads(json.dumps(checkpoint_of(self.errand))))
         assert again is not None
@@ -162,7 +162,7 @@ class ErrandHistories(RuleBasedStateMachine):
         while self.end is None and self.now < deadline:
             self.now += 0.5
             if isinstance(self.goal, MeasurePathLengths):
-                self.the_ways_are_measured(True)
+                self.the_path_lengths_are_measured(True)
             elif self.goal is not None:
                 self.the_goal_ends(GoalReached())
             else:

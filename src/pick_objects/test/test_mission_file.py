@@ -29,7 +29,7 @@ def parse(text=GOOD, **known):
     return parse_mission(text, {"door": DOOR}, **known)
 
 
-def test_a_mission_is_read_with_the_places_that_were_known_before(tmp_path):
+def test_a_mission_may_refer_to_known_places(tmp_path):
     mission = parse(defaults=ErrandSettings(attempts=7))
     assert mission.name == "evening"
     assert mission.places["desk"].approaches == (Pose2(2.5, 0.5, 1.57),)
@@ -87,7 +87,7 @@ def test_a_mission_is_read_with_the_places_that_were_known_before(tmp_path):
         ("object: cup, ", "", r"mission:14: deliveries\[1\].object is missing"),
     ],
 )
-def test_a_mistake_is_told_with_line_and_key(before, after, complaint):
+def test_a_mistake_is_reported_with_line_and_key(before, after, complaint):
     assert before in GOOD
     with pytest.raises(SettingsError, match=complaint):
         parse(GOOD.replace(before, after, 1))
@@ -102,7 +102,7 @@ def test_a_mistake_is_told_with_line_and_key(before, after, complaint):
         ("..", r"mission:8: places.desk.approaches\[1\].x and y: .* lies outside the map"),
     ],
 )
-def test_a_place_in_a_wall_is_told_with_line_and_key(picture, complaint):
+def test_a_place_in_a_wall_is_reported_with_line_and_key(picture, complaint):
     with pytest.raises(SettingsError, match=complaint):
         parse(grid=grid_from_picture(picture))
     assert parse(grid=grid_from_picture("...")).places

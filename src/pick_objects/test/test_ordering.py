@@ -30,7 +30,7 @@ def test_equal_orders_stay_as_they_were_given():
     assert shortest_order([1.0] * 4, [[1.0] * 4] * 4, [set()] * 4) == [0, 1, 2, 3]
 
 
-def test_of_very_many_the_nearest_is_next():
+def test_of_many_deliveries_the_nearest_is_next():
     count = 30
     between = np.abs(np.subtract.outer(np.arange(count), np.arange(count))).astype(float)
     before = [set() for _ in range(count)]

@@ -31,7 +31,7 @@ def test_the_page_shows_both_maps_and_both_lines(folders):
     assert 'class="line a"' in page and 'class="line b"' in page
 
 
-def test_a_folder_of_no_run_is_refused_by_name(tmp_path):
+def test_a_folder_without_a_run_is_refused_by_name(tmp_path):
     with pytest.raises(RecordError, match="not the folder of a run"):
         load_run(tmp_path)
     (tmp_path / "result.json").write_text("{")

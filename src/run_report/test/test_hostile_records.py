@@ -23,7 +23,7 @@ CHANGES = {
 
 
 @pytest.mark.parametrize("what", CHANGES)
-def test_a_record_of_other_things_is_refused(record, tmp_path, what):
+def test_a_record_with_wrong_types_is_refused(record, tmp_path, what):
     path = save_record(tmp_path, record)
     path.write_text(json.dumps({**json.loads(path.read_text()), **CHANGES[what]}))
     with pytest.raises(RecordError, match=FILE_NAME):
@@ -35,14 +35,14 @@ def test_a_record_of_other_things_is_refused(record, tmp_path, what):
     ["[]", "7", "{", "[" * 100_000, '{"plans": 1' + 5000 * "0" + "}"],
     ids=["list", "number", "half", "deep", "long"],
 )
-def test_what_is_no_record_at_all_is_refused(tmp_path, content):
+def test_a_file_that_is_no_record_is_refused(tmp_path, content):
     (tmp_path / FILE_NAME).write_text(content)
     with pytest.raises(RecordError):
         load_record(tmp_path)
 
 
 @pytest.mark.parametrize("change", [{"position_error": 5}, {"versions": []}, {"simulated_seconds": "long"}])
-def test_a_result_of_other_things_is_refused(record, result, tmp_path, change):
+def test_a_result_with_wrong_types_is_refused(record, result, tmp_path, change):
     save_record(tmp_path, record)
     (tmp_path / "result.json").write_text(json.dumps({**result, **change}))
     with pytest.raises(RecordError, match="result"):

@@ -51,7 +51,7 @@ def test_the_page_is_whole_and_loads_nothing(record, result):
     assert "picking up <now>" in page.text
 
 
-def test_a_page_of_nothing_but_a_verdict_can_be_made():
+def test_a_page_with_only_a_verdict_can_be_made():
     page = Page(report_html({"success": False, "reason": "no master"}, RunRecord()))
     assert "no master" in page.text
 
@@ -67,7 +67,7 @@ def test_every_sample_and_event_survives_being_saved(record, tmp_path):
 
 
 @pytest.mark.parametrize("content", ["", "[]", '{"truth": 3}'])
-def test_a_record_that_is_none_is_refused_by_name(content, tmp_path):
+def test_a_broken_record_is_refused_by_name(content, tmp_path):
     (tmp_path / "record.json").write_text(content)
     with pytest.raises(RecordError, match="record.json: not the record of a run"):
         load_record(tmp_path)
@@ -107,7 +107,7 @@ def test_a_folder_gets_every_file_and_trajectories_that_other_tools_read(record,
         assert animation.n_frames > 20
 
 
-def test_what_a_full_disk_keeps_from_being_written_is_told_by_the_page(record, result, tmp_path, monkeypatch):
+def test_the_page_lists_what_a_full_disk_kept_from_being_written(record, result, tmp_path, monkeypatch):
     def write(path, data):
         if path.suffix != ".html":
             raise FileWriteError(f"{path}: cannot be written (No space left on device)")

@@ -30,19 +30,19 @@ def test_what_is_given_takes_the_place_of_defaults():
     assert parse(Wash, words, "wash.sh") == Wash((Path("cup"), Path("pan")), True, "red", 2.0)
 
 
-def test_nobody_writes_into_what_was_parsed():
+def test_parsed_options_are_immutable():
     with pytest.raises(FrozenInstanceError):
         parse(Wash, ["cup"], "wash.sh").hot = True
 
 
-def test_nonsense_ends_the_process_in_the_name_of_the_script(capsys):
+def test_an_unknown_option_ends_the_process_with_the_name_of_the_script(capsys):
     with pytest.raises(SystemExit) as stop:
         parse(Wash, ["cup", "--known", "8"], "wash.sh")
     assert stop.value.code == 2
     assert "wash.sh: error: unrecognized arguments: --known 8" in capsys.readouterr().err
 
 
-def test_help_tells_the_first_line_and_the_defaults(capsys):
+def test_help_shows_the_first_line_and_the_defaults(capsys):
     with pytest.raises(SystemExit):
         parse(Wash, ["--help"], "wash.sh")
     told = capsys.readouterr().out

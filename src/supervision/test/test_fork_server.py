@@ -88,7 +88,9 @@ def start(name, *call, words=(), **options):
     return subprocess.Popen(command, env=environment, text=True, **{**streams, **options})
 
 
-def test_command_line_environment_folder_streams_and_exit_code_are_its_own(server, tmp_path):
+def test_a_forked_child_has_the_clients_command_line_environment_folder_streams_and_exit_code(
+    server, tmp_path
+):
     process = start(server[1], "program:tell", "told", words=["text"], cwd=tmp_path)
     out, error = process.communicate("typed", timeout=SECONDS)
     assert out == f"forked told word {tmp_path} text typed\n"
@@ -97,11 +99,11 @@ def test_command_line_environment_folder_streams_and_exit_code_are_its_own(serve
 
 
 @pytest.mark.parametrize("name", ["", "no_such_server"])
-def test_without_a_server_it_goes_on_alone(modules, name):
+def test_without_a_server_the_program_runs_in_its_own_process(modules, name):
     assert start(name, "program:draw").communicate(timeout=SECONDS)[0] == "alone\n"
 
 
-def test_a_server_that_dies_meanwhile_is_none(modules):
+def test_a_server_that_dies_before_the_answer_counts_as_absent(modules):
     with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as listener:
         listener.bind("\0dying_server")
         listener.listen()
@@ -110,7 +112,7 @@ def test_a_server_that_dies_meanwhile_is_none(modules):
         assert process.communicate(timeout=SECONDS)[0] == "alone\n"
 
 
-def test_a_child_begins_when_signals_are_handed_on_and_not_before(server, tmp_path):
+def test_a_child_starts_only_when_signals_are_forwarded(server, tmp_path):
     order = {
         "call": ["program:draw"],
         "argv": [""],
@@ -133,7 +135,7 @@ def test_a_child_begins_when_signals_are_handed_on_and_not_before(server, tmp_pa
         wait_until(lambda: has_ended(child))
 
 
-def test_a_signal_that_asks_for_an_end_is_handed_on(server):
+def test_termination_signals_are_forwarded(server):
     process = start(server[1], "program:wait")
     process.stdout.readline()
     process.terminate()
@@ -141,21 +143,21 @@ def test_a_signal_that_asks_for_an_end_is_handed_on(server):
 
 
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM])
-def test_it_dies_of_what_its_child_dies_of(server, number):
+def test_the_client_exits_with_the_signal_of_its_child(server, number):
     process = start(server[1], "program:wait")
     child = int(process.stdout.readline().split()[0])
     os.kill(child, number)
     assert process.wait(SECONDS) == (-number if number == signal.SIGKILL else 3)
 
 
-def test_its_child_dies_with_it(server):
+def test_the_child_dies_with_its_client(server):
     process = start(server[1], "program:wait")
     child = psutil.Process(int(process.stdout.readline().split()[0]))
     process.kill()
     wait_until(lambda: has_ended(child))
 
 
-def test_a_child_outlives_the_server_and_is_still_asked_to_end(server):
+def test_a_child_outlives_the_server_and_still_receives_signals(server):
     process = start(server[1], "program:wait")
     child = psutil.Process(int(process.stdout.readline().split()[0]))
     server[0].kill()
@@ -174,12 +176,12 @@ def test_ps_shows_it_under_its_own_command_line(server):
     process.kill()
 
 
-def test_each_draws_other_random_numbers(server):
+def test_each_child_draws_different_random_numbers(server):
     drawn = {start(server[1], "program:draw").communicate(timeout=SECONDS)[0] for _ in range(3)}
     assert len(drawn) == 3
 
 
-def test_nonsense_and_silence_are_no_reason_to_end(server):
+def test_malformed_and_missing_requests_do_not_end_the_server(server):
     for said in (b"nonsense", b"[1]", None):
         with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as client:
             client.connect(f"\0{server[1]}")
@@ -190,7 +192,7 @@ def test_nonsense_and_silence_are_no_reason_to_end(server):
     assert start(server[1], "program:draw").communicate(timeout=SECONDS)[0] != "alone\n"
 
 
-def test_the_server_ends_with_who_has_started_it(modules):
+def test_the_server_ends_with_the_process_that_started_it(modules):
     streams = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
     process = subprocess.Popen([sys.executable, "-c", STARTER], text=True, **streams)
     server = psutil.Process(int(process.stdout.readline()))
@@ -199,7 +201,7 @@ def test_the_server_ends_with_who_has_started_it(modules):
 
 
 @pytest.mark.parametrize("ask, code", [(subprocess.Popen.terminate, 130), (lambda it: it.stdin.close(), 4)])
-def test_when_who_has_started_it_has_left_it_has_ended_however_busy_it_was(modules, ask, code):
+def test_the_server_has_ended_when_its_parent_has_exited_even_if_it_was_busy(modules, ask, code):
     streams = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE)
     process = subprocess.Popen([sys.executable, "-c", STARTER], text=True, **streams)
     server = psutil.Process(int(process.stdout.readline()))

@@ -11,7 +11,7 @@ def test_the_port_of_a_master_is_none_that_an_outgoing_connection_may_take():
     assert not any(first <= free_port() <= last for _ in range(100))
 
 
-def test_a_port_that_somebody_listens_on_is_not_free():
+def test_a_port_with_a_listener_is_not_free():
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", free_port()))
         taken.listen()

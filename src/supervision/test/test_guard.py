@@ -45,14 +45,14 @@ def mark():
 def start(mark, *command, by=STARTER):
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), MARK: mark}
     starter = [sys.executable, "-c", by, *command]
-    return subprocess.Popen(starter, env=environment, stdout=subprocess.PIPE, preexec_fn=hear_hang_up)
+    return subprocess.Popen(starter, env=environment, stdout=subprocess.PIPE, preexec_fn=handle_hang_up)
 
 
 def start_waiting(mark, patience, *command):
     return start(mark, str(patience), *command, by=WAITER)
 
 
-def hear_hang_up():
+def handle_hang_up():
     """Also where the tests themselves run under nohup."""
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
@@ -77,7 +77,7 @@ def seconds_until(is_so, most):
     return time.monotonic() - started
 
 
-def test_nothing_outlives_who_is_killed_at_any_moment(mark):
+def test_nothing_outlives_a_parent_that_is_killed_at_any_moment(mark):
     moments = random.Random(1)
     for _ in range(8):
         starter = start(mark, "bash", "-c", DEAF_PARENT)
@@ -107,7 +107,7 @@ def test_ctrl_c_is_for_the_command(mark):
 
 
 @pytest.mark.parametrize("how, code", [("exit 5", 5), ("kill -KILL $$", 256 - signal.SIGKILL)])
-def test_it_ends_as_its_command_has_ended(mark, how, code):
+def test_the_guard_exits_like_its_command(mark, how, code):
     assert start(mark, "bash", "-c", how).wait(START_SECONDS) == code
 
 
@@ -118,7 +118,7 @@ def test_what_a_command_leaves_behind_is_ended(mark):
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP, signal.SIGINT])
-def test_who_runs_a_guarded_command_waits_for_its_end(mark, number):
+def test_run_guarded_waits_for_the_end_of_the_command(mark, number):
     hearing = "trap 'sleep 2.5; exit 3' INT; trap '' HUP; echo ready; while true; do sleep 0.05; done"
     starter = start_waiting(mark, LONG_PATIENCE_SECONDS, "bash", "-c", hearing)
     assert starter.stdout.readline() == b"ready\n"
@@ -127,7 +127,7 @@ def test_who_runs_a_guarded_command_waits_for_its_end(mark, number):
     assert not processes_of(mark)
 
 
-def test_a_guarded_command_that_is_asked_to_end_as_it_starts_has_a_code_of_its_own(mark):
+def test_a_guarded_command_that_is_terminated_as_it_starts_returns_its_own_code(mark):
     moments = random.Random(2)
     codes = set()
     hearing = "trap 'exit 3' INT; while true; do sleep 0.02; done"
@@ -142,7 +142,7 @@ def test_a_guarded_command_that_is_asked_to_end_as_it_starts_has_a_code_of_its_o
     assert codes <= {3, 128 + signal.SIGTERM, 128 + signal.SIGINT}, codes
 
 
-def test_nothing_outlives_a_guarded_command_or_who_runs_it(mark):
+def test_nothing_outlives_a_guarded_command_or_its_parent(mark):
     for place in (0, 1, 2):
         starter = start_waiting(mark, PATIENCE_SECONDS, "bash", "-c", f"echo ready; {DEAF_PARENT}")
         assert starter.stdout.readline() == b"ready\n"

@@ -35,6 +35,6 @@ def test_a_low_limit_is_raised_as_far_as_the_system_lets_it(before, after):
 
 
 @pytest.mark.parametrize("hard", [64, 128, 255])
-def test_too_few_are_refused_in_a_sentence(hard):
+def test_a_limit_that_is_too_low_is_refused(hard):
     complaint = f"no more than {hard} open files are allowed (ulimit -n), and the nodes need 256"
     assert limits_after(hard // 2, hard).endswith(complaint)

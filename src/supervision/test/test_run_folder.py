@@ -7,13 +7,13 @@ from planar import SettingsError
 from supervision.run_folder import create_run_folder, write_result
 
 
-def test_two_runs_in_one_second_get_folders_of_their_own(tmp_path):
+def test_two_runs_in_one_second_get_separate_folders(tmp_path):
     folders = {create_run_folder(tmp_path / "runs", "errand") for _ in range(3)}
     assert len(folders) == 3
     assert all((folder / "log").is_dir() for folder in folders)
 
 
-def test_a_name_that_another_run_takes_at_the_same_moment_is_left_to_it(tmp_path, monkeypatch):
+def test_a_name_taken_by_another_run_at_the_same_moment_is_skipped(tmp_path, monkeypatch):
     create_run_folder(tmp_path, "errand")
     monkeypatch.setattr(Path, "exists", lambda _path: False)
     folders = {create_run_folder(tmp_path, "errand") for _ in range(3)}

@@ -25,7 +25,7 @@ DEADLINE = 20.0
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_main_thread_that_waits_hears_a_signal_that_another_thread_takes(number):
+def test_a_signal_taken_by_another_thread_wakes_a_waiting_main_thread(number):
     command = [sys.executable, "-c", WAITING]
     for _ in range(8):  # one in four was not heard
         with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:

@@ -59,7 +59,7 @@ def test_a_watch_ends_when_its_work_is_done(graph, tmp_path):
     assert supervised(tmp_path).watch(lambda: next(asked), str) is None
 
 
-def test_a_watch_ends_with_what_a_dead_node_said(graph, tmp_path):
+def test_a_watch_ends_with_the_error_of_a_dead_node(graph, tmp_path):
     graph.exits.failure = NodeFailure("amcl: no map", is_bad_input=False)
     assert supervised(tmp_path).watch(lambda: False, str) == "amcl: no map"
 
@@ -76,7 +76,7 @@ def test_a_watch_gives_up_in_time(graph, tmp_path):
     assert reason == "not done within 0.05 s of wall-clock time"
 
 
-def test_a_watch_that_gives_up_names_the_nodes_that_do_not_answer(graph, tmp_path, monkeypatch):
+def test_a_watch_that_times_out_names_unresponsive_nodes(graph, tmp_path, monkeypatch):
     monkeypatch.setattr(supervisor, "unresponsive_nodes", lambda: ["amcl", "map_server"])
     reason = supervised(tmp_path, time_limit=0.05).watch(lambda: False, str)
     assert reason == "not done within 0.05 s of wall-clock time; no answer of amcl, map_server"
@@ -112,18 +112,18 @@ def test_a_refused_connection_is_the_end_of_the_graph(graph, tmp_path):
         supervised(tmp_path).run_in_thread("the node", be_refused)
 
 
-def test_another_mistake_at_work_is_told(graph, tmp_path):
+def test_another_error_in_the_thread_is_raised(graph, tmp_path):
     with pytest.raises(ZeroDivisionError):
         supervised(tmp_path).run_in_thread("the node", lambda: 1 / 0)
 
 
-def test_how_roslaunch_was_killed_is_told(graph, tmp_path):
+def test_the_signal_that_killed_roslaunch_is_reported(graph, tmp_path):
     graph.is_running, graph.how_it_ended = False, "was ended by SIGKILL"
     reason = supervised(tmp_path).watch(lambda: False, str)
     assert reason == f"roslaunch was ended by SIGKILL, see {tmp_path}"
 
 
-def test_why_nothing_runs_any_more_is_told_after_an_interrupt_too(graph, tmp_path, monkeypatch):
+def test_the_end_of_the_graph_is_explained_after_an_interrupt_too(graph, tmp_path, monkeypatch):
     monkeypatch.setattr(interruption, "_is_interrupted", True)
     watcher = supervised(tmp_path)
     graph.exits.failure = NodeFailure("sim_bridge: was ended by SIGKILL", is_bad_input=False)

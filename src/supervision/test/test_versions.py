@@ -33,13 +33,13 @@ CPU part\t: 0xd0c
         (ARM, "implementer 0x41 part 0xd0c asimd"),
     ],
 )
-def test_the_processor_is_told_with_the_vector_units_that_results_depend_on(tmp_path, cpuinfo, told):
+def test_the_processor_is_named_with_its_widest_vector_unit(tmp_path, cpuinfo, told):
     (tmp_path / "cpuinfo").write_text(cpuinfo)
     assert processor(tmp_path / "cpuinfo") == told
 
 
 @pytest.mark.parametrize("content", [None, "", "no colon here\n"])
-def test_a_machine_that_does_not_tell_its_processor_is_unknown(tmp_path, content):
+def test_a_processor_without_information_is_unknown(tmp_path, content):
     if content is not None:
         (tmp_path / "cpuinfo").write_text(content)
     assert processor(tmp_path / "cpuinfo") == "unknown"

@@ -1,4 +1,4 @@
-"""The object of an errand as a marker: where it is shown, and when it is hidden."""
+"""Markers for the objects of an errand or a mission, and boxes for solid ones. No ROS outside of ``ros``."""
 
 from add_markers.boxes import BoxPlacer, PlaceBox, RemoveBox, SolidBox
 from add_markers.config import MarkerSettings

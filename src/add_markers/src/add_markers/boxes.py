@@ -1,4 +1,4 @@
-"""Objects that are bodies in the simulator: where each stands, and when it rides on the robot."""
+"""Solid objects of a mission as boxes: where each is placed, and when it is on the robot."""
 
 import math
 from dataclasses import dataclass
@@ -7,22 +7,28 @@ from typing import Dict, List, Optional, Sequence, Tuple, Union
 from planar import Pose2
 from planar.geometry.grid import FREE, OccupancyGrid
 
+# Distance from the robot's centre to the edge of a box beside it, so that the robot can turn [m].
 GAP = 0.4
-"""Between the middle of the robot and the box that it picks up or has set down, metres: room to turn."""
 MARGIN = 0.05
+# Directions in which a box is placed, relative to the robot's heading; those in front first.
 ANGLES = [math.radians(side * angle) for angle in range(0, 181, 30) for side in (1, -1)]
-"""To the sides of where the robot faces, those in front first."""
+# Height of a box: lower ones are below some lasers [m].
 HEIGHT = 0.4
-"""Of a box, metres: lower ones are not seen by every laser, and run over."""
+# Mass of a box, too light to disturb a TurtleBot [kg].
 MASS = 0.3
-"""Of a box, kilograms: less than a TurtleBot notices."""
+# Width of a TurtleBot, and height of what it carries, just above its top [m].
 ROBOT_SIZE, RIDING_HEIGHT = 0.36, 0.43
-"""How wide a TurtleBot is, and the height of what it carries, a little above its top, metres."""
 
 
 @dataclass(frozen=True)
 class SolidBox:
-    """A box ``size`` metres wide; ``pose``: of the place where it is, None while it is carried."""
+    """A solid object.
+
+    Attributes:
+        name: Name of the object.
+        size: Width [m].
+        pose: Pose of the place where it is, in the map; None while it is carried.
+    """
 
     name: str
     size: float
@@ -31,7 +37,12 @@ class SolidBox:
 
 @dataclass(frozen=True)
 class PlaceBox:
-    """Order: the box is to stand at ``pose`` on the floor, or, if that is None, to ride on the robot."""
+    """Order: place a box on the floor or on the robot.
+
+    Attributes:
+        solid: The box.
+        pose: Pose on the floor in the map; None: on the robot.
+    """
 
     solid: SolidBox
     pose: Optional[Pose2]
@@ -39,7 +50,11 @@ class PlaceBox:
 
 @dataclass(frozen=True)
 class RemoveBox:
-    """Order: the box is to be taken away."""
+    """Order: remove a box.
+
+    Attributes:
+        name: Name of the box.
+    """
 
     name: str
 
@@ -48,7 +63,12 @@ Order = Union[PlaceBox, RemoveBox]
 
 
 class BoxPlacer:
-    """Follows a mission's boxes. ``grid``: a map of where they may stand; ``standing``: those that do."""
+    """Finds room for the boxes of a mission.
+
+    Attributes:
+        grid: Map in which boxes are placed on free cells; None: anywhere.
+        placed: Poses of the boxes on the floor, by name.
+    """
 
     def __init__(self) -> None:
         self.grid: Optional[OccupancyGrid] = None
@@ -56,7 +76,12 @@ class BoxPlacer:
         self._solids: Dict[str, SolidBox] = {}
 
     def update(self, solids: Sequence[SolidBox], robot: Pose2) -> List[Order]:
-        """What is to be done now that the mission stands so; ``robot``: where it is in the map."""
+        """Compare the boxes with those of the last call and return the orders that make them true.
+
+        Args:
+            solids: All solid objects of the mission.
+            robot: Pose of the robot in the map.
+        """
         gone = set(self._solids) - {solid.name for solid in solids}
         orders: List[Order] = [RemoveBox(name) for name in sorted(gone)]
         for name in gone:
@@ -69,14 +94,14 @@ class BoxPlacer:
             self._solids[solid.name] = solid
             self.placed.pop(solid.name, None)
             if solid.pose is not None:
-                has_ridden = before is not None and before.pose is None
-                beside = robot if has_ridden else solid.pose
+                was_carried = before is not None and before.pose is None
+                beside = robot if was_carried else solid.pose
                 self.placed[solid.name] = self._place_beside(beside, solid.size, robot)
             orders.append(PlaceBox(solid, self.placed.get(solid.name)))
         return orders
 
     def _place_beside(self, pose: Pose2, size: float, robot: Pose2) -> Pose2:
-        """Where a box has room next to a robot at ``pose``, be it there or not; in front of it if nowhere."""
+        """Return a free pose next to a robot at ``pose``; the one in front of it if none is free."""
         others = [(at, self._solids[name].size) for name, at in self.placed.items()]
         others.append((robot, ROBOT_SIZE))
         places = [pose @ Pose2(0.0, 0.0, angle) @ Pose2(GAP + size / 2.0, 0.0) for angle in ANGLES]

@@ -1,4 +1,4 @@
-"""Settings of the marker."""
+"""Settings of the markers."""
 
 from dataclasses import dataclass
 
@@ -8,7 +8,7 @@ from planar.config.parameters import POSITIVE, ZERO_OR_MORE, check_parameters, p
 
 @dataclass(frozen=True)
 class MarkerSettings:
-    """Which story the marker tells, and what tells it where the robot is."""
+    """Mode of the markers, and the source of the robot's pose."""
 
     zones_file: str = parameter(
         "",
@@ -17,29 +17,27 @@ class MarkerSettings:
     )
     mode: str = parameter(
         "service",
-        "service: the errand's object; mission: each object of a mission; demo: by the clock",
+        "service: marker of the errand; mission: a marker for each object; demo: by the clock",
         choices=("service", "mission", "demo"),
     )
     pose_source: str = parameter(
         "tf",
-        "what tells where the robot is: tf, amcl_pose, odom, or state (of pick_objects)",
+        "source of the robot's pose: tf, amcl_pose, odom, or state (of pick_objects)",
         choices=("tf", "amcl_pose", "odom", "state"),
     )
-    show_seconds: float = parameter(5.0, "demo: how long the marker is shown at pick-up", "s", ZERO_OR_MORE)
+    show_seconds: float = parameter(5.0, "demo: time that the marker is shown at pick-up", "s", ZERO_OR_MORE)
     hide_seconds: float = parameter(
-        5.0, "demo: how long it is hidden before it is shown at drop-off", "s", ZERO_OR_MORE
+        5.0, "demo: time that it is hidden before it is shown at drop-off", "s", ZERO_OR_MORE
     )
     pickup_seconds: float = parameter(
-        5.0, "service: how long the robot stays at pick-up until it has the object", "s", ZERO_OR_MORE
+        5.0, "service: time that the robot stays at pick-up until it has the object", "s", ZERO_OR_MORE
     )
-    resume: bool = parameter(
-        False, "for a node that is respawned: whether to go on where an earlier one was cut short"
-    )
-    frame_id: str = parameter("map", "frame in which the zones are given")
+    resume: bool = parameter(False, "for a respawned node: resume from the state of the one before")
+    frame_id: str = parameter("map", "frame of the zones")
     base_frame_id: str = parameter("base_footprint", "the robot's frame, for pose_source tf")
     size: float = parameter(0.2, "edge of the cube", "m", POSITIVE)
     robot_model: str = parameter(
-        "mobile_base", "mission: the model of the robot in the simulator, that carries solid objects"
+        "mobile_base", "mission: model of the robot in the simulator that carries solid objects"
     )
 
     def __post_init__(self):

@@ -1,4 +1,4 @@
-"""Where the object of an errand is, as far as one can see it."""
+"""Location of the errand's object, derived from the robot's pose or from the clock."""
 
 import enum
 from typing import Optional
@@ -9,7 +9,7 @@ from planar.maps.places import NamedPlace
 
 
 class ParcelStage(enum.Enum):
-    """How far an object has come."""
+    """Stage of the object."""
 
     WAITING = "waiting"
     CARRIED = "carried"
@@ -17,9 +17,16 @@ class ParcelStage(enum.Enum):
 
 
 class CarriedParcel:
-    """An object that waits at pick-up, leaves with the robot and is set down at drop-off.
+    """An object that waits at pick-up, is carried by the robot, and is set down at drop-off.
 
-    ``stage``: how far it has come.
+    Args:
+        pickup: Place where it waits.
+        dropoff: Place where it is set down.
+        pickup_seconds: Time that the robot stays at pick-up until it has the object [s].
+        stage: Stage to start from.
+
+    Attributes:
+        stage: Current stage.
     """
 
     def __init__(
@@ -37,7 +44,15 @@ class CarriedParcel:
         self._arrived_at: Optional[float] = None
 
     def update(self, now: float, robot: Optional[Pose2]) -> Optional[Pose2]:
-        """Where the object is shown, or None while it is hidden. ``robot``: its pose in the map, if known."""
+        """Advance to the current time.
+
+        Args:
+            now: Time [s].
+            robot: Pose of the robot in the map; None if it is not known.
+
+        Returns:
+            Pose where the object is shown; None while it is hidden.
+        """
         if robot is not None:
             self._follow(self._elapsed.at(now), robot)
         return {ParcelStage.WAITING: self._pickup.pose, ParcelStage.DELIVERED: self._dropoff.pose}.get(
@@ -57,7 +72,7 @@ class CarriedParcel:
 
 
 class TimedParcel:
-    """An object shown at pick-up, hidden, and shown at drop-off, by the clock alone."""
+    """An object that is shown at pick-up, hidden, and shown at drop-off, by the clock alone."""
 
     def __init__(self, pickup: NamedPlace, dropoff: NamedPlace, show_seconds: float, hide_seconds: float):
         self._pickup = pickup
@@ -67,7 +82,7 @@ class TimedParcel:
         self._elapsed = ElapsedTime()
 
     def update(self, now: float, robot: Optional[Pose2] = None) -> Optional[Pose2]:
-        """Where the object is shown, or None while it is hidden; the clock starts with the first call."""
+        """Return the pose where the object is shown, None while it is hidden. The first call starts it."""
         elapsed = self._elapsed.at(now)
         if elapsed < self._hide_after:
             return self._pickup.pose

@@ -1,4 +1,4 @@
-"""Missions of deliveries between named places; pure but for node.py and nodes."""
+"""Missions of deliveries between named places. No ROS outside of ``pick_objects.ros``."""
 
 from pick_objects.approach import DriveToPlace
 from pick_objects.arrival import ArrivalCheck, RecentScanFit, ResendGoal

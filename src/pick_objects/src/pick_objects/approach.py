@@ -1,4 +1,4 @@
-"""One drive to a place: its poses in turn, with time-outs and pauses, until it is reached or given up."""
+"""Drive to one place: its poses in turn, with time-outs and pauses, until it is reached or given up."""
 
 from dataclasses import dataclass
 from typing import Optional, Union
@@ -11,60 +11,83 @@ from planar.maps.places import NamedPlace
 
 @dataclass(frozen=True)
 class DriveToPlace:
-    """Order: drive to this place. It takes the place of any earlier order."""
+    """Order: drive to a place. It replaces any earlier order.
+
+    Attributes:
+        place: Where to drive.
+        attempt: Number of the attempt, from 1.
+    """
 
     place: NamedPlace
     attempt: int
 
     @property
     def pose(self) -> Pose2:
-        """The one of the place's poses whose turn it is."""
+        """Goal pose of this attempt: the poses of a place are tried in turn."""
         return self.place.poses[(self.attempt - 1) % len(self.place.poses)]
 
 
 @dataclass(frozen=True)
 class PlaceReached:
-    """The place is reached."""
+    """The robot is at the place."""
 
 
 @dataclass(frozen=True)
 class PlaceUnreachable:
-    """The place cannot be reached, and why."""
+    """The place was given up.
+
+    Attributes:
+        reason: Why the last attempt failed.
+    """
 
     reason: str
 
 
 class PlaceApproach:
-    """Answers, told the time and what came of the last goal, what to do to get to ``place``."""
+    """Sends the robot to a place until it arrives or has used up its attempts.
+
+    Args:
+        place: Where to drive.
+        settings: Attempts, pauses and the default time-out.
+        goal_timeout: Time after which an attempt has failed [s]; None: that of the settings.
+    """
 
     def __init__(self, place: NamedPlace, settings: ErrandSettings, goal_timeout: Optional[float] = None):
         self.place = place
         self.attempt = 0
         self._settings = settings
         self._timeout = settings.goal_timeout if goal_timeout is None else goal_timeout
-        self._begun_at = self._sent_at = 0.0
+        self._started_at = self._sent_at = 0.0
         self._retry_at: Optional[float] = None
-        self._is_taken_over = False
+        self._is_preempted = False
 
     def start(self, now: float) -> DriveToPlace:
-        """The next attempt, or the same once more if others took the robot for themselves."""
-        if not self._is_taken_over:
+        """Begin the next attempt, or repeat the current one if another client took the robot over."""
+        if not self._is_preempted:
             self.attempt += 1
-            self._begun_at = now
+            self._started_at = now
         self._sent_at = now
         self._retry_at = None
-        self._is_taken_over = False
+        self._is_preempted = False
         return DriveToPlace(self.place, self.attempt)
 
     def advance(
         self, now: float, event: Union[None, GoalReached, GoalFailed]
     ) -> Union[None, DriveToPlace, PlaceReached, PlaceUnreachable]:
-        """What has come of it, the next goal, or None to carry on. ``now``: seconds."""
+        """Advance to the current time.
+
+        Args:
+            now: Time [s].
+            event: Outcome of the last goal, if there is a new one.
+
+        Returns:
+            The next goal, the end of the approach, or None while nothing changes.
+        """
         if isinstance(event, GoalReached):
             return PlaceReached()
         if isinstance(event, GoalFailed):
-            if event.is_preempted and 0.0 <= now - self._begun_at <= self._timeout:
-                self._is_taken_over, self._retry_at = True, now + self._settings.retry_seconds
+            if event.is_preempted and 0.0 <= now - self._started_at <= self._timeout:
+                self._is_preempted, self._retry_at = True, now + self._settings.retry_seconds
                 return None
             return self._give_up_or_pause(now, event.reason)
         if self._retry_at is not None:

@@ -1,4 +1,4 @@
-"""Whether a robot that has reached its goal is believed to be there."""
+"""Check that a robot that has reached its goal is where localization estimates it to be."""
 
 from collections import deque
 from dataclasses import dataclass
@@ -8,36 +8,36 @@ from planar import Pose2
 from planar.driving import GoalFailed, GoalReached, RobotDisplaced
 from planar.elapsed import ElapsedTime
 
-# Below, the scan of the moment speaks against the robot's pose. As amcl_lite tells it: the probability that
-# the pose is right to half a metre.
+# Below this fit a scan contradicts the estimated pose. The fit is amcl_lite's probability that the estimate
+# is within half a metre of the true pose.
 MIN_FIT = 0.2
-# So many scans have to speak for it: the newest may have corrected the pose only after the robot had arrived.
+# Number of scans that must fit: the latest may have corrected the estimate only after the robot had arrived.
 RECENT_SCANS = 2
-# In which a robot that stands is told by some scans where it is.
+# Time that the robot stands, in which localization receives some scans [s].
 STANDING_SECONDS = 1.0
-# Metres.
+# Distance that a relocalized robot may drive without being checked again [m].
 SHORT_DISTANCE = 0.25
 
 
 class RecentScanFit:
-    """How well the last scans fit the map where the robot was believed to be."""
+    """How well the last scans fit the map at the estimated pose."""
 
     def __init__(self) -> None:
         self._last: Deque[float] = deque(maxlen=RECENT_SCANS)
 
     def add(self, fit: float) -> None:
-        """That of one more scan."""
+        """Add the fit of one more scan, a probability."""
         self._last.append(fit)
 
     @property
     def minimum(self) -> Optional[float]:
-        """Of those, None if nobody has told."""
+        """Worst fit of the last scans; None if there is none."""
         return min(self._last, default=None)
 
 
 @dataclass(frozen=True)
 class ResendGoal:
-    """The goal is to be pursued once more: the robot may be elsewhere, or not."""
+    """Order: send the goal once more, since the estimate may have been wrong."""
 
 
 GoalOutcome = Union[None, GoalReached, GoalFailed]
@@ -45,10 +45,15 @@ ArrivalEvent = Union[GoalOutcome, ResendGoal, RobotDisplaced]
 
 
 class ArrivalCheck:
-    """That at one goal. In doubt the robot stands for a moment, and is then sent there once more.
+    """Checks the arrival at one goal.
 
-    Scans of a turn may fit badly where the robot is, and one that stands finds out where it is. One that has
-    arrived and been sure of it, and is in doubt again, may have been carried away.
+    If the last scans contradict the estimated pose, the robot stands for a moment, so that localization can
+    correct the estimate, and is then sent to the goal once more: scans taken while turning may fit badly at
+    the correct pose. A robot that has arrived with a confirmed pose and then contradicts it may have been
+    displaced.
+
+    Args:
+        goal: Pose of the goal in the map.
     """
 
     def __init__(self, goal: Pose2):
@@ -57,11 +62,17 @@ class ArrivalCheck:
         self._was_resent = self._was_relocalized = self._has_arrived = self._was_confirmed = False
         self._distance = 0.0
 
-    def check(self, told: GoalOutcome, robot: Pose2, fit: Optional[float], now: float) -> ArrivalEvent:
-        """What to make of what was ``told`` of the goal; to be asked all along, also if there is nothing new.
+    def check(self, outcome: GoalOutcome, robot: Pose2, fit: Optional[float], now: float) -> ArrivalEvent:
+        """Judge the outcome of the goal; call it at each tick, also without a new outcome.
 
-        ``robot``: where it is believed to be. The last scans fit the map there at least as well as ``fit``;
-        None: nobody has told. ``now``: seconds.
+        Args:
+            outcome: Outcome of the goal as reported by navigation, None if there is no new one.
+            robot: Estimated pose in the map.
+            fit: Worst fit of the last scans at that pose; None if it is not known.
+            now: Time [s].
+
+        Returns:
+            The outcome to act on; ResendGoal; RobotDisplaced if the robot has probably been moved; or None.
         """
         if self._standing is not None:
             return self._wait_standing(fit, now)
@@ -69,17 +80,17 @@ class ArrivalCheck:
             return self._check_displaced(fit)
         if self._was_resent:
             self._distance = max(self._distance, self._goal.distance_to(robot))
-        if not isinstance(told, GoalReached) or not _contradicts(fit) or self._is_still_near:
-            self._has_arrived = isinstance(told, GoalReached)
-            return told
+        if not isinstance(outcome, GoalReached) or not _contradicts(fit) or self._is_still_near:
+            self._has_arrived = isinstance(outcome, GoalReached)
+            return outcome
         if self._was_resent:
-            return GoalFailed("the robot may be elsewhere: what the laser sees does not fit the map there")
+            return GoalFailed("the laser scan does not fit the map at the estimated pose: robot displaced?")
         self._standing = ElapsedTime()
         return self._wait_standing(fit, now)
 
     @property
     def _is_still_near(self) -> bool:
-        """From where it was found, standing, it has come too short a way to be lost again."""
+        """Whether the robot, relocalized while standing, has driven too short a distance to be lost again."""
         return self._was_relocalized and self._distance < SHORT_DISTANCE
 
     def _check_displaced(self, fit: Optional[float]) -> Optional[RobotDisplaced]:
@@ -95,5 +106,5 @@ class ArrivalCheck:
 
 
 def _contradicts(fit: Optional[float]) -> bool:
-    """Whether the last scans do against the robot's pose; what nobody has told does not."""
+    """Whether the last scans contradict the estimated pose; an unknown fit does not."""
     return fit is not None and fit < MIN_FIT

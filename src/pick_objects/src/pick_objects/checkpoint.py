@@ -1,4 +1,4 @@
-"""What of an errand outlives its node: how each delivery stands, and where each object is."""
+"""Checkpoint of an errand, which survives its node: stages of deliveries and locations of objects."""
 
 from dataclasses import asdict
 from typing import Any, Dict, Mapping, Optional
@@ -16,7 +16,7 @@ RESUMED_STAGE = {
 
 
 def checkpoint_of(errand: Errand) -> Dict[str, Any]:
-    """Made of what JSON knows."""
+    """Return the errand's state as JSON-compatible values."""
     return {
         "mission": errand.mission.name,
         "is_cancelled": errand.is_cancelled,
@@ -29,7 +29,7 @@ def checkpoint_of(errand: Errand) -> Dict[str, Any]:
             }
             for job in errand.jobs
         ],
-        "whereabouts": {
+        "object_locations": {
             object_name: {"place": where.place, "pose": asdict(where.pose), "is_carried": where.is_carried}
             for object_name, where in errand.object_locations.items()
         },
@@ -37,11 +37,12 @@ def checkpoint_of(errand: Errand) -> Dict[str, Any]:
 
 
 def resume_errand(mission: Mission, record: Mapping[str, Any]) -> Optional[Errand]:
-    """The errand of a mission, taken up where an earlier one was cut short.
+    """Restore an interrupted errand of a mission from a checkpoint.
 
-    None if the record is of another mission.
+    Returns:
+        The errand; None if the checkpoint belongs to another mission.
     """
-    jobs = [_job(told) for told in record["jobs"]]
+    jobs = [_job(entry) for entry in record["jobs"]]
     deliveries = [job.delivery for job in jobs]
     if record["mission"] != mission.name or not set(mission.deliveries) <= set(deliveries):
         return None
@@ -49,15 +50,15 @@ def resume_errand(mission: Mission, record: Mapping[str, Any]) -> Optional[Erran
         if delivery not in mission.deliveries:
             mission = mission.with_delivery(delivery)
     errand = Errand(mission)
-    places = {
-        object_name: ObjectLocation(told["place"], Pose2(**told["pose"]), told["is_carried"])
-        for object_name, told in record["whereabouts"].items()
+    locations = {
+        object_name: ObjectLocation(entry["place"], Pose2(**entry["pose"]), entry["is_carried"])
+        for object_name, entry in record["object_locations"].items()
     }
-    errand.resume(jobs, places, record["is_cancelled"])
+    errand.resume(jobs, locations, record["is_cancelled"])
     return errand
 
 
-def _job(told: Mapping[str, Any]) -> DeliveryJob:
-    delivery = Delivery(**{**told["delivery"], "after": tuple(told["delivery"]["after"])})
-    stage = DeliveryStage[told["stage"]]
-    return DeliveryJob(delivery, RESUMED_STAGE.get(stage, stage), told["attempts"], told["reason"])
+def _job(entry: Mapping[str, Any]) -> DeliveryJob:
+    delivery = Delivery(**{**entry["delivery"], "after": tuple(entry["delivery"]["after"])})
+    stage = DeliveryStage[entry["stage"]]
+    return DeliveryJob(delivery, RESUMED_STAGE.get(stage, stage), entry["attempts"], entry["reason"])

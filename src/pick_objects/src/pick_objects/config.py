@@ -1,4 +1,4 @@
-"""Settings of the errand and of its node."""
+"""Settings of the errand and of the node."""
 
 from dataclasses import dataclass
 
@@ -8,25 +8,25 @@ from planar.config.parameters import POSITIVE, ZERO_OR_MORE, at_least, check_par
 
 @dataclass(frozen=True)
 class ErrandSettings:
-    """How long things take, how patient the robot is, and what it makes of failures."""
+    """Durations, patience and the reaction to failures."""
 
-    pickup_seconds: float = parameter(5.0, "how long picking up takes", "s", ZERO_OR_MORE)
-    dropoff_seconds: float = parameter(0.0, "how long setting down takes", "s", ZERO_OR_MORE)
-    goal_timeout: float = parameter(180.0, "a goal not reached by then has failed", "s", POSITIVE)
+    pickup_seconds: float = parameter(5.0, "duration of picking up", "s", ZERO_OR_MORE)
+    dropoff_seconds: float = parameter(0.0, "duration of setting down", "s", ZERO_OR_MORE)
+    goal_timeout: float = parameter(180.0, "time after which a goal has failed", "s", POSITIVE)
     attempts: int = parameter(
         3,
-        "how often a place is tried, each time from the next of its poses, before it is given up",
+        "number of attempts to reach a place, each at the next of its poses",
         bounds=at_least(1),
     )
-    retry_seconds: float = parameter(1.0, "pause before a place is tried again", "s", ZERO_OR_MORE)
+    retry_seconds: float = parameter(1.0, "pause before the next attempt", "s", ZERO_OR_MORE)
     on_failure: str = parameter(
         "stop",
-        "after a delivery that failed: stop, or continue with the next one",
+        "after a failed delivery: stop the mission, or continue with the next delivery",
         choices=("stop", "continue"),
     )
     order: str = parameter(
         "given",
-        "of the deliveries: given, or shortest (by the lengths of move_base's plans)",
+        "order of the deliveries: given, or shortest (by the lengths of move_base's plans)",
         choices=("given", "shortest"),
     )
 
@@ -36,7 +36,7 @@ class ErrandSettings:
 
 @dataclass(frozen=True)
 class NodeSettings:
-    """What the node carries out, and where it finds what it needs."""
+    """What the node carries out, and its inputs."""
 
     zones_file: str = parameter(
         "",
@@ -46,20 +46,20 @@ class NodeSettings:
     mission_file: str = parameter(
         "", "YAML file of a mission; empty: from the place pickup to the place dropoff"
     )
-    serve: bool = parameter(False, "whether to wait for missions sent to the action deliver, until shutdown")
+    serve: bool = parameter(False, "wait for missions sent to the action deliver, until shutdown")
     wait_for: str = parameter(
-        "", "nodes of ours, by spaces, that are to be ready too before the mission begins"
+        "", "further nodes of this project, separated by spaces, that must be ready before the mission starts"
     )
     resume: bool = parameter(
         False,
-        "for a node that is respawned: whether to go on where the last was cut short, and to stay when done",
+        "for a respawned node: resume the interrupted mission, and keep running when it is done",
     )
-    frame_id: str = parameter("map", "frame in which the places are given")
+    frame_id: str = parameter("map", "frame of the places")
     server_timeout: float = parameter(
-        60.0, "how long to wait for move_base and those nodes, by the wall clock", "s", POSITIVE
+        60.0, "wall-clock time to wait for move_base and the nodes of wait_for", "s", POSITIVE
     )
     map_timeout: float = parameter(
-        10.0, "how long to wait for a map to check the places against, by the wall clock", "s", POSITIVE
+        10.0, "wall-clock time to wait for a map to check the places against", "s", POSITIVE
     )
 
     def __post_init__(self):

@@ -1,4 +1,4 @@
-"""One delivery: to its object, pick it up, to where it is wanted, set it down."""
+"""One delivery: drive to the object, pick it up, drive to the destination, set it down."""
 
 from typing import Dict, Optional, Union
 
@@ -10,10 +10,14 @@ from planar.driving import GoalFailed, GoalReached, RobotDisplaced
 
 
 class DeliveryExecution:
-    """Makes the delivery of ``job``, whose stage tells how far it is: in the end DELIVERED or FAILED.
+    """Carries out the delivery of ``job``, whose stage ends as DELIVERED or FAILED.
 
-    ``approach``: the drive that it is on, or the last one, that of an earlier delivery to begin with.
-    ``whereabouts`` of the objects are kept up to date, and so is the ``forecast``.
+    Args:
+        job: Delivery and its stage, updated in place.
+        mission: Mission that it belongs to.
+        object_locations: Location of each object, updated in place.
+        driving_time: Estimator of driving times, updated in place.
+        approach: Approach of the delivery before, from where the robot starts.
     """
 
     def __init__(
@@ -29,9 +33,9 @@ class DeliveryExecution:
         self._since, self._displacements = 0.0, 0
 
     def start(self, now: float) -> Optional[DriveToPlace]:
-        """The first order; None if the delivery has failed already."""
+        """Return the first order; None if the delivery has failed already."""
         delivery = self.job.delivery
-        if self.job.stage is DeliveryStage.CARRYING:  # taken up again
+        if self.job.stage is DeliveryStage.CARRYING:  # resumed after a restart
             return self._go(now, DeliveryStage.CARRYING)
         if self._object_locations[delivery.object_name].place != delivery.source:
             self._fail(f"{delivery.object_name} is not at {delivery.source}")
@@ -41,7 +45,7 @@ class DeliveryExecution:
     def advance(
         self, now: float, event: Union[None, GoalReached, GoalFailed, RobotDisplaced]
     ) -> Optional[DriveToPlace]:
-        """The next order, or None to carry on, or if the delivery has ended."""
+        """Return the next order; None while nothing changes, or when the delivery has ended."""
         if self.job.stage in (DeliveryStage.PICKING_UP, DeliveryStage.SETTING_DOWN):
             return self._go_back(now) if isinstance(event, RobotDisplaced) else self._pick_up_or_set_down(now)
         assert self.approach is not None
@@ -72,7 +76,7 @@ class DeliveryExecution:
         return self._pick_up_or_set_down(now)
 
     def _pick_up_or_set_down(self, now: float) -> Optional[DriveToPlace]:
-        """Picks up or sets down, which takes its time."""
+        """Finish picking up or setting down once its time is over."""
         assert self.approach is not None
         delivery, settings = self.job.delivery, self._mission.settings
         is_picking_up = self.job.stage is DeliveryStage.PICKING_UP
@@ -88,7 +92,7 @@ class DeliveryExecution:
         return None
 
     def _go_back(self, now: float) -> Optional[DriveToPlace]:
-        """To where the robot was about to pick up or set down, as often as places are tried at most."""
+        """Return to the place after a displacement, at most as often as places are tried."""
         assert self.approach is not None
         self._displacements += 1
         if self._displacements >= self._mission.settings.attempts:

@@ -1,16 +1,20 @@
-"""How long driving takes, learnt on the way."""
+"""Estimate of driving times from the speed so far."""
 
 from typing import Optional
 
 from planar import Pose2
 
 INITIAL_SPEED = 0.3
+# Length of a path in a home divided by the straight-line distance.
 DETOUR_FACTOR = 1.3
-"""A way in a home is about so much longer than the straight line."""
 
 
 class DrivingTimeEstimator:
-    """Estimates driving times from straight distances and the pace so far, metres per second."""
+    """Estimates driving times from straight-line distances and the average speed so far.
+
+    Args:
+        speed: Assumed speed before any drive was measured [m/s].
+    """
 
     def __init__(self, speed: float = INITIAL_SPEED):
         self._initial_speed = speed
@@ -19,6 +23,7 @@ class DrivingTimeEstimator:
         self._leg_metres = 0.0
 
     def seconds_between(self, start: Pose2, end: Pose2) -> float:
+        """Return the estimated time to drive from one pose to another [s]."""
         return DETOUR_FACTOR * start.distance_to(end) / self._speed
 
     def on_departure(self, now: float, start: Optional[Pose2], end: Pose2) -> None:
@@ -27,20 +32,21 @@ class DrivingTimeEstimator:
         self._leg_metres = DETOUR_FACTOR * start.distance_to(end) if start else 0.0
 
     def on_arrival(self, now: float) -> None:
+        """The robot has arrived; the drive is added to the average."""
         if self._departed_at is not None and self._leg_metres > 0.0:
             self._metres += self._leg_metres
             self._seconds += now - self._departed_at
         self._departed_at = None
 
     def seconds_left(self, now: float) -> float:
-        """Of the way that the robot is on."""
+        """Return the estimated rest of the current drive [s]."""
         if self._departed_at is None:
             return 0.0
         return max(0.0, self._leg_metres / self._speed - (now - self._departed_at))
 
     @property
     def _speed(self) -> float:
-        """The pace so far, of which little driving says little."""
+        """Average speed, with a prior of ten seconds at the initial speed."""
         prior_seconds = 10.0
         metres = self._metres + prior_seconds * self._initial_speed
         return metres / (self._seconds + prior_seconds)

@@ -1,4 +1,4 @@
-"""The errand: carries a mission out, one delivery after the other."""
+"""Execution of a mission: one delivery after the other."""
 
 from dataclasses import dataclass
 from typing import Dict, List, Mapping, Optional, Sequence, Tuple, Union
@@ -25,14 +25,22 @@ from planar.maps.places import NamedPlace
 
 @dataclass(frozen=True)
 class MeasurePathLengths:
-    """Order: find out how long these ways are. A way from None begins where the robot is."""
+    """Order: plan these legs and report their lengths.
 
-    ways: Tuple[Tuple[Optional[Pose2], Pose2], ...]
+    Attributes:
+        legs: Start and end of each leg; a start of None is the robot's position.
+    """
+
+    legs: Tuple[Tuple[Optional[Pose2], Pose2], ...]
 
 
 @dataclass(frozen=True)
 class PathLengthsMeasured:
-    """Event: the lengths of the ways of the last order, metres; None where there is no way."""
+    """Event: lengths of the legs of the last order.
+
+    Attributes:
+        lengths: Metres; None where there is no path.
+    """
 
     lengths: Tuple[Optional[float], ...]
 
@@ -42,9 +50,15 @@ Event = Union[GoalReached, GoalFailed, RobotDisplaced, PathLengthsMeasured]
 
 
 class Errand:
-    """A mission under way, told the time and what happened, answering what to do next.
+    """State machine of a mission: it receives the time and events, and returns orders.
 
-    ``whereabouts``: of each object. ``is_cancelled``: the whole of it. ``reason``: how it ended, in words.
+    Args:
+        mission: Mission to carry out.
+
+    Attributes:
+        object_locations: Location of each object, by name.
+        is_cancelled: The whole mission was cancelled.
+        reason: How the mission ended, in words; empty while it is running.
     """
 
     def __init__(self, mission: Mission):
@@ -59,7 +73,15 @@ class Errand:
         self._elapsed = ElapsedTime()
 
     def advance(self, now: float, event: Optional[Event] = None) -> Optional[Order]:
-        """The next order, or None to carry on. ``now``: seconds; ``event``: what came of the last order."""
+        """Advance to the current time.
+
+        Args:
+            now: Time [s].
+            event: Outcome of the last order, if there is a new one.
+
+        Returns:
+            The next order; None while nothing changes.
+        """
         now = self._elapsed.at(now)
         if self._is_over:
             return None
@@ -73,7 +95,14 @@ class Errand:
         return self._begin_next(now) if self._execution.job.stage in ENDED else order
 
     def add(self, delivery: Delivery) -> Delivery:
-        """Adds a delivery to those that wait; returns it with its name. Raises MissionError."""
+        """Append a delivery.
+
+        Returns:
+            The delivery with the name that it has been given.
+
+        Raises:
+            MissionError: If the mission is over or the delivery is not valid.
+        """
         self._refuse_if_over()
         self.mission = self.mission.with_delivery(delivery)
         added = self.mission.deliveries[-1]
@@ -87,18 +116,27 @@ class Errand:
         object_locations: Mapping[str, ObjectLocation],
         is_cancelled: bool = False,
     ) -> None:
-        """Goes on where an earlier errand of this mission was cut short; comes before the first advance.
+        """Restore the state of an interrupted errand of this mission; call it before the first advance.
 
-        A job may be CARRYING; no other is under way.
+        Args:
+            jobs: Deliveries in their order; at most one is under way, and that one is CARRYING.
+            object_locations: Location of each object.
+            is_cancelled: The mission was cancelled.
         """
         self._schedule.jobs = list(jobs)
         self.object_locations.update(object_locations)
         self.is_cancelled = is_cancelled
 
     def cancel(self, name: str = "") -> None:
-        """Cancels the delivery of that name, or the whole mission; what is on the robot for it is set down.
+        """Cancel a delivery, or the whole mission; an object on the robot is set down.
 
-        The next call of advance tells where to go now. Raises MissionError.
+        The next call of advance returns what to do now.
+
+        Args:
+            name: Name of the delivery; empty: the whole mission.
+
+        Raises:
+            MissionError: If there is no such delivery, or it has ended.
         """
         self._refuse_if_over()
         if name:
@@ -113,7 +151,7 @@ class Errand:
 
     @property
     def state(self) -> ErrandState:
-        """What the robot is about, which follows from how its deliveries stand."""
+        """Current activity, derived from the stages of the deliveries."""
         if self._is_over:
             return self._final_state
         if self._is_measuring:
@@ -122,32 +160,32 @@ class Errand:
 
     @property
     def jobs(self) -> List[DeliveryJob]:
-        """The deliveries in the order in which they are carried out."""
+        """Deliveries in the order of execution."""
         return self._schedule.jobs
 
     @property
     def job(self) -> Optional[DeliveryJob]:
-        """The delivery in progress, or the last one."""
+        """Delivery in progress, or the last one."""
         return self._execution.job if self._execution else None
 
     @property
     def place(self) -> Optional[NamedPlace]:
-        """The place that the robot is at or on its way to."""
+        """Place that the robot is at or driving to."""
         return self._execution.approach.place if self._execution and self._execution.approach else None
 
     @property
     def attempt(self) -> int:
-        """How often the robot was sent to that place."""
+        """Number of the attempt to reach that place."""
         return self._execution.approach.attempt if self._execution and self._execution.approach else 0
 
     @property
     def progress(self) -> float:
-        """The share of the mission that is over, 0 to 1."""
+        """Completed share of the mission, 0 to 1."""
         done = sum(1.0 if job.stage in ENDED else job.stage.value / 5.0 for job in self.jobs)
         return done / len(self.jobs)
 
     def time_left(self, now: float) -> float:
-        """Seconds that the rest of the mission is estimated to take."""
+        """Estimate the remaining time of the mission [s]."""
         if self._is_over:
             return 0.0
         settings, places, where = self.mission.settings, self.mission.places, self.place
@@ -175,7 +213,7 @@ class Errand:
                     return self._conclude()
                 if not self._schedule.is_ordered and len(waiting) > 1:
                     self._is_measuring = True
-                    return MeasurePathLengths(self._schedule.ways(self.mission.places))
+                    return MeasurePathLengths(self._schedule.legs(self.mission.places))
                 job = self._schedule.next_job()
             approach = self._execution.approach if self._execution else None
             self._execution = DeliveryExecution(
@@ -227,8 +265,8 @@ class Errand:
         if len(self.jobs) == 1:
             return reason
         counts = [(stage, sum(job.stage is stage for job in self.jobs)) for stage in ENDED]
-        told = [f"{count} {stage.name.lower()}" for stage, count in counts[1:] if count]
-        text = ", ".join([f"{counts[0][1]} of {len(self.jobs)} delivered", *told])
+        ended = [f"{count} {stage.name.lower()}" for stage, count in counts[1:] if count]
+        text = ", ".join([f"{counts[0][1]} of {len(self.jobs)} delivered", *ended])
         return f"{text}; {reason}" if self._schedule.has_failed else text
 
     def _refuse_if_over(self) -> None:
@@ -236,7 +274,7 @@ class Errand:
             raise MissionError("the mission is over")
 
     def _place_objects(self) -> None:
-        """An object is where the first delivery of it begins."""
+        """Locate each object at the source of its first delivery."""
         for delivery in self.mission.deliveries:
             source = self.mission.places[delivery.source]
             self.object_locations.setdefault(delivery.object_name, ObjectLocation(source.name, source.pose))

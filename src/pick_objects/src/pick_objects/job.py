@@ -1,4 +1,4 @@
-"""How a mission and its deliveries stand."""
+"""State of a mission and of its deliveries."""
 
 import enum
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from planar import Pose2
 
 
 class ErrandState(enum.Enum):
-    """What the robot is about; the values are what ``~state`` publishes."""
+    """Current activity of the robot; the values are published on ``~state``."""
 
     READY = "ready"
     ORDERING = "choosing the order"
@@ -23,7 +23,7 @@ class ErrandState(enum.Enum):
 
 
 class DeliveryStage(enum.Enum):
-    """How far a delivery has come; the values are those of home_service_msgs/DeliveryState."""
+    """Stage of a delivery; the values are those of home_service_msgs/DeliveryState."""
 
     WAITING = 0
     FETCHING = 1
@@ -36,20 +36,27 @@ class DeliveryStage(enum.Enum):
 
 
 ENDED = (DeliveryStage.DELIVERED, DeliveryStage.FAILED, DeliveryStage.CANCELLED)
+# Stages in which the object is on the robot.
 ON_ROBOT = (DeliveryStage.CARRYING, DeliveryStage.SETTING_DOWN)
-"""Where the object of a delivery is then."""
+# State of the errand while a delivery is in progress.
 STATE_OF_STAGE = {
     DeliveryStage.FETCHING: ErrandState.GOING_TO_PICKUP,
     DeliveryStage.PICKING_UP: ErrandState.PICKING_UP,
     DeliveryStage.CARRYING: ErrandState.GOING_TO_DROPOFF,
     DeliveryStage.SETTING_DOWN: ErrandState.SETTING_DOWN,
 }
-"""What the robot is about while a delivery is in progress."""
 
 
 @dataclass
 class DeliveryJob:
-    """A delivery and what has become of it. ``attempts``: goals sent for it so far."""
+    """A delivery and its state.
+
+    Attributes:
+        delivery: What to carry where.
+        stage: How far it has come.
+        attempts: Goals sent for it so far.
+        reason: Why it failed or was cancelled.
+    """
 
     delivery: Delivery
     stage: DeliveryStage = DeliveryStage.WAITING
@@ -65,9 +72,12 @@ class DeliveryJob:
 
 @dataclass(frozen=True)
 class ObjectLocation:
-    """Where an object is: at a place, with the robot, or (neither) where the robot had to leave it.
+    """Location of an object: at a place, on the robot, or, if neither, where the robot had to leave it.
 
-    ``pose``: where it stands or stood last, in the map.
+    Attributes:
+        place: Name of the place; None: not at a place.
+        pose: Pose in the map where it stands or stood last.
+        is_carried: It is on the robot.
     """
 
     place: Optional[str]
@@ -76,5 +86,5 @@ class ObjectLocation:
 
     @property
     def dropped(self) -> "ObjectLocation":
-        """Set down where the robot stands, if it was on it."""
+        """The location after the robot has set the object down where it stands."""
         return ObjectLocation(None, self.pose) if self.is_carried else self

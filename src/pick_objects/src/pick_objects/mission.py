@@ -1,4 +1,4 @@
-"""What a mission is: objects, and deliveries of them between places."""
+"""Missions: objects, and deliveries of them between places."""
 
 from dataclasses import dataclass, field, replace
 from itertools import count
@@ -12,14 +12,18 @@ ORANGE = (0.9, 0.4, 0.1)
 
 
 class MissionError(PlanarError):
-    """A mission, or a change of one, that cannot be carried out as it is put."""
+    """A mission, or a change to one, is not valid."""
 
 
 @dataclass(frozen=True)
 class MissionObject:
-    """An object to be carried: the edge of a cube around it in metres; red, green and blue from 0 to 1.
+    """An object to be carried.
 
-    ``solid``: whether it is a body in the simulator, a column that wide.
+    Attributes:
+        name: Unique name.
+        size: Edge of a cube around it [m].
+        color: Red, green and blue, 0 to 1.
+        solid: It is a body in the simulator (a column of that width), not only a marker.
     """
 
     name: str
@@ -30,9 +34,15 @@ class MissionObject:
 
 @dataclass(frozen=True)
 class Delivery:
-    """``object_name`` is to be carried from one place to another; all are named.
+    """An object to be carried from one place to another; all are referred to by name.
 
-    ``after``: deliveries that must have been made before. ``goal_timeout``: seconds, if not the mission's.
+    Attributes:
+        name: Unique name in the mission.
+        object_name: Object to carry.
+        source: Place where the object is.
+        destination: Place where it is to be set down.
+        after: Deliveries that must be completed before.
+        goal_timeout: Time-out of a goal [s]; None: that of the mission.
     """
 
     name: str
@@ -45,7 +55,15 @@ class Delivery:
 
 @dataclass(frozen=True)
 class Mission:
-    """Deliveries between places that it knows by name."""
+    """Deliveries between named places.
+
+    Attributes:
+        name: Name of the mission.
+        places: Places by name.
+        deliveries: Deliveries in the given order.
+        objects: Described objects by name.
+        settings: Durations and patience.
+    """
 
     name: str
     places: Mapping[str, NamedPlace]
@@ -54,11 +72,15 @@ class Mission:
     settings: ErrandSettings = ErrandSettings()
 
     def object_named(self, name: str) -> MissionObject:
-        """The object of that name; one that nobody has described is an ordinary one."""
+        """Return the object of that name, with default properties if it is not described."""
         return self.objects.get(name, MissionObject(name))
 
     def with_delivery(self, delivery: Delivery) -> "Mission":
-        """The mission with one more delivery, named if it had no name. Raises MissionError."""
+        """Return the mission with one more delivery, which is given a name if it has none.
+
+        Raises:
+            MissionError: If the delivery is not valid.
+        """
         names = {known.name for known in self.deliveries}
         name = delivery.name or next(
             name for number in count(len(names) + 1) if (name := f"delivery {number}") not in names
@@ -79,7 +101,7 @@ class Mission:
 def errand_mission(
     pickup: NamedPlace, dropoff: NamedPlace, settings: ErrandSettings = ErrandSettings()
 ) -> Mission:
-    """The mission of a single delivery: the object at the pick-up zone is wanted at the drop-off zone."""
+    """Return the mission with a single delivery, from the pick-up zone to the drop-off zone."""
     places = {pickup.name: pickup, dropoff.name: dropoff}
     delivery = Delivery("errand", "parcel", pickup.name, dropoff.name)
     return Mission("errand", places, (delivery,), settings=settings)

@@ -1,4 +1,4 @@
-"""Mission files: YAML, of which every mistake is told with file, line and key before anything moves."""
+"""Mission files: YAML; every mistake is reported with file, line and key."""
 
 from dataclasses import fields
 from pathlib import Path
@@ -14,7 +14,7 @@ from planar.maps.places import NamedPlace, obstruction_at, parse_place
 
 Places = Mapping[str, NamedPlace]
 MAX_SOLID_SIZE = 0.25
-TEXT_SOURCE = "mission"  # that stands where else the name of the file does
+TEXT_SOURCE = "mission"  # in messages, where the file's name would be
 
 
 def load_mission(
@@ -23,10 +23,16 @@ def load_mission(
     defaults: ErrandSettings = ErrandSettings(),
     grid: Optional[OccupancyGrid] = None,
 ) -> Mission:
-    """The mission of a file, between places of its own and ``known_places``.
+    """Read a mission file.
 
-    ``defaults``: the settings that it leaves out. ``grid``: a map in which all its places must be free.
-    Raises SettingsError naming file, line and key.
+    Args:
+        path: YAML file.
+        known_places: Places that it may refer to in addition to its own.
+        defaults: Settings that it leaves out.
+        grid: Map in which all its places must be free; None: not checked.
+
+    Raises:
+        SettingsError: With file, line and key.
     """
     return _mission(read_table(path), str(path), known_places, defaults, grid)
 
@@ -37,7 +43,7 @@ def parse_mission(
     defaults: ErrandSettings = ErrandSettings(),
     grid: Optional[OccupancyGrid] = None,
 ) -> Mission:
-    """The mission of a text, as load_mission of a file."""
+    """Parse the text of a mission file; see load_mission."""
     return _mission(parse_table(text, TEXT_SOURCE), TEXT_SOURCE, known_places, defaults, grid)
 
 
@@ -48,7 +54,7 @@ def _mission(
     defaults: ErrandSettings,
     grid: Optional[OccupancyGrid],
 ) -> Mission:
-    # What goes wrong meanwhile, ``faults``, is the simulator's business.
+    # ``faults`` are read by the simulator.
     table.allow_only("name", "places", "objects", "settings", "deliveries", "faults")
     name = table.text("name", Path(source).stem)
     places = {**known_places, **_places(table, grid)}
@@ -145,7 +151,7 @@ def _check_name(entry: Table, key: str, names, known, kind: str) -> None:
 
 
 def _check_cycles(deliveries: List[Delivery], lines: Mapping[str, Table]) -> None:
-    """Deliveries that wait for each other, also since an object is carried on from where one left it."""
+    """Refuse deliveries that wait for each other, also because they carry the same object on."""
     waits_for: Dict[str, Set[str]] = {}
     latest_of_object: Dict[str, str] = {}
     for delivery in deliveries:
@@ -163,7 +169,7 @@ def _check_cycles(deliveries: List[Delivery], lines: Mapping[str, Table]) -> Non
 
 
 def _check_object_locations(deliveries: List[Delivery], lines: Mapping[str, Table]) -> None:
-    """An object is carried on from where it was left."""
+    """Refuse a delivery whose object was left elsewhere by the one before."""
     left_at: Dict[str, Delivery] = {}
     for delivery in deliveries:
         last = left_at.get(delivery.object_name)

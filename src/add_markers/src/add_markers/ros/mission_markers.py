@@ -19,7 +19,7 @@ STATE_TOPIC = "pick_objects/mission_state"
 
 
 class MissionMarkers:
-    """A marker's name space is its object's name; solid objects become bodies in the simulator, too."""
+    """Publishes a marker for each object (namespace: the object's name); solid ones become boxes, too."""
 
     def __init__(self, settings: MarkerSettings):
         self._base_frame = settings.base_frame_id
@@ -27,9 +27,9 @@ class MissionMarkers:
         self._placed: Dict[str, Pose2] = {}
         self._shown: Dict[str, ObjectState] = {}
         self._frame_id = ""
-        # rospy has new subscribers met in a thread of its own, without the publisher's lock.
+        # rospy calls peer_subscribe in a separate thread, without the publisher's lock.
         self._showing = threading.Lock()
-        # Subscribers that come late get the latest marker of each object, not of one of them alone.
+        # A latched topic would keep the marker of one object only; late subscribers get the latest of each.
         self._publisher = rospy.Publisher(
             "visualization_marker", Marker, subscriber_listener=_Repeater(self), queue_size=50
         )
@@ -38,7 +38,7 @@ class MissionMarkers:
         ReadinessMonitor({f"a mission on {rospy.resolve_name(STATE_TOPIC)}": lambda: self._has_state})
 
     def repeat(self, publish) -> None:
-        """The latest marker of each object, to one subscriber."""
+        """Send the latest marker of each object to one subscriber."""
         with self._showing:
             for state in self._shown.values():
                 publish(self._marker(state))
@@ -58,7 +58,7 @@ class MissionMarkers:
             before = self._shown.get(name)
             if state != before:
                 if before is not None and before.is_carried:
-                    # rviz 1.14 dies of a marker that is no longer locked to its frame.
+                    # rviz 1.14 crashes if a marker is no longer locked to its frame.
                     self._publisher.publish(Marker(ns=name, action=Marker.DELETE))
                 self._shown[name] = state
                 self._publisher.publish(self._marker(state))

@@ -1,4 +1,4 @@
-"""The ROS node of add_markers: shows the objects of an errand or a mission as cubes in rviz."""
+"""ROS node of add_markers: shows the objects of an errand or a mission as cubes in rviz."""
 
 from typing import Callable, List, Optional, Union
 
@@ -26,12 +26,12 @@ from planar_ros.step import LockstepClient
 UPDATE_SECONDS = 0.1
 NOT_PUBLISHED = object()
 Locate = Callable[[], Optional[Pose2]]
-# Where the mission state of pick_objects puts the robot.
+# States of pick_objects that determine the robot's place.
 PICKING_UP, DELIVERED = "picking up", "delivered"
 
 
 class AddMarkersNode:
-    """Publishes the marker whenever it appears, moves or disappears; latched, it waits for nobody."""
+    """Publishes the errand's marker, latched, whenever it appears, moves or disappears."""
 
     def __init__(self, settings: MarkerSettings):
         self._settings = settings
@@ -41,21 +41,21 @@ class AddMarkersNode:
         self._publisher = rospy.Publisher("visualization_marker", Marker, queue_size=10, latch=True)
         self._zones = rospy.Publisher("zones", MarkerArray, queue_size=1, latch=True)
         self._zones.publish(zone_markers(places, settings.frame_id))
-        self._keepsake: Optional[ParameterCheckpoint] = None
+        self._checkpoint: Optional[ParameterCheckpoint] = None
         self._parcel: Union[TimedParcel, CarriedParcel]
         self._locate: Locate
         if settings.mode == "demo":
             self._parcel = TimedParcel(*places, settings.show_seconds, settings.hide_seconds)
             self._locate = lambda: None
         else:
-            self._keepsake = ParameterCheckpoint() if settings.resume else None
-            stage = ParcelStage((self._keepsake and self._keepsake.found) or ParcelStage.WAITING)
+            self._checkpoint = ParameterCheckpoint() if settings.resume else None
+            stage = ParcelStage((self._checkpoint and self._checkpoint.found) or ParcelStage.WAITING)
             self._parcel = CarriedParcel(*places, settings.pickup_seconds, stage)
             self._locate = self._locator(settings.pose_source)
         ReadinessMonitor(self._conditions())
 
     def work(self):
-        """From now on follows the parcel."""
+        """Update the marker until shutdown."""
         step = LockstepClient.of_node()
         step.every(lambda: UPDATE_SECONDS, self._update, lambda: None)
         step.join()
@@ -63,8 +63,8 @@ class AddMarkersNode:
     def _update(self, now: rospy.Time) -> None:
         self._robot = self._locate()
         self._show(self._parcel.update(now.to_sec(), self._robot))
-        if self._keepsake is not None and isinstance(self._parcel, CarriedParcel):
-            self._keepsake.keep(self._parcel.stage.value)
+        if self._checkpoint is not None and isinstance(self._parcel, CarriedParcel):
+            self._checkpoint.keep(self._parcel.stage.value)
 
     def _locator(self, source: str) -> Locate:
         if source == "tf":
@@ -72,19 +72,19 @@ class AddMarkersNode:
             return lambda: transforms.lookup(self._settings.frame_id, self._settings.base_frame_id)
         latest: List[Optional[Pose2]] = [None]
 
-        def keep_pose(message) -> None:
+        def on_pose(message) -> None:
             latest[0] = pose2_from_msg(message.pose.pose)
 
-        def keep_state(message) -> None:
+        def on_state(message) -> None:
             place = {PICKING_UP: self._pickup, DELIVERED: self._dropoff}.get(message.data)
             latest[0] = place.pose if place else None
 
         if source == "state":
-            rospy.Subscriber("pick_objects/state", String, keep_state, queue_size=10)
+            rospy.Subscriber("pick_objects/state", String, on_state, queue_size=10)
         elif source == "odom":
-            subscribe("odom", Odometry, keep_pose, queue_size=1)
+            subscribe("odom", Odometry, on_pose, queue_size=1)
         else:
-            subscribe("amcl_pose", PoseWithCovarianceStamped, keep_pose, queue_size=1)
+            subscribe("amcl_pose", PoseWithCovarianceStamped, on_pose, queue_size=1)
         return lambda: latest[0]
 
     def _conditions(self):

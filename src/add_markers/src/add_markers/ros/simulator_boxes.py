@@ -1,4 +1,4 @@
-"""The solid objects of a mission as boxes in the simulator, moved by Gazebo's services."""
+"""Solid objects of a mission as boxes in the simulator, moved by Gazebo's services."""
 
 from typing import Dict, List, Optional, Sequence, Set
 
@@ -35,7 +35,7 @@ BOX = f"""
 
 
 class SimulatedBoxes:
-    """Moves the boxes as the mission goes on; without a simulator it says so and leaves it at markers."""
+    """Moves the boxes as the mission proceeds; without a simulator it logs a warning and stops."""
 
     def __init__(self, settings: MarkerSettings):
         self._robot, self._base = settings.robot_model, settings.base_frame_id
@@ -43,11 +43,18 @@ class SimulatedBoxes:
         self._latest: List[SolidBox] = []
         self._has_failed = False
         self._colors: Dict[str, ColorRGBA] = {}
-        self._there: Set[str] = set()
-        subscribe("map", OccupancyGridArrays, self._keep_map, queue_size=1)
+        self._spawned: Set[str] = set()
+        subscribe("map", OccupancyGridArrays, self._on_map, queue_size=1)
 
     def follow(self, objects: Sequence[ObjectState]) -> Dict[str, Pose2]:
-        """Brings the boxes to where they belong now; where each stands that is not carried."""
+        """Move the boxes to where they belong.
+
+        Args:
+            objects: State of all objects of the mission.
+
+        Returns:
+            Poses of the boxes on the floor, by name.
+        """
         solids = [_solid_of(state) for state in objects if state.is_solid]
         if solids == self._latest or self._has_failed:
             return self._bodies.placed
@@ -58,20 +65,20 @@ class SimulatedBoxes:
             for order in self._bodies.update(solids, self._robot_in_world()):
                 self._carry_out(order)
         except (ServiceError, rospy.ROSException) as error:
-            rospy.logwarn("the objects are not in a simulator: %s", error)
+            rospy.logwarn("solid objects are shown as markers only, no simulator answers: %s", error)
             self._has_failed = True
         self._latest = solids
         return self._bodies.placed
 
     def _carry_out(self, order) -> None:
-        """A box that moves is made anew; one without weight keeps still until it is attached to the robot."""
+        """Spawn a moved box again; one without gravity stays in place until it is attached to the robot."""
         name = order.name if isinstance(order, RemoveBox) else order.solid.name
-        if name in self._there:
-            self._there.discard(name)
+        if name in self._spawned:
+            self._spawned.discard(name)
             _ask("delete_model", DeleteModel, DeleteModelRequest(name))
         if isinstance(order, PlaceBox):
             self._make(order)
-            self._there.add(name)
+            self._spawned.add(name)
 
     def _make(self, move: PlaceBox) -> None:
         name, size, is_riding = move.solid.name, move.solid.size, move.pose is None
@@ -89,7 +96,7 @@ class SimulatedBoxes:
         request = GetModelStateRequest(self._robot, "world")
         return pose2_from_msg(_ask("get_model_state", GetModelState, request).pose)
 
-    def _keep_map(self, message) -> None:
+    def _on_map(self, message) -> None:
         self._bodies.grid = grid_from_msg(message)
 
 
@@ -99,7 +106,11 @@ def _solid_of(state: ObjectState) -> SolidBox:
 
 
 def _ask(name: str, kind, request):
-    """The answer of one of Gazebo's services. Raises ServiceError, also if it refuses."""
+    """Call one of Gazebo's services.
+
+    Raises:
+        ServiceError: If it does not answer or refuses.
+    """
     response = call_service(f"/gazebo/{name}", kind, request, ANSWER_SECONDS)
     if not response.success:
         raise ServiceError(response.status_message)

@@ -1,4 +1,4 @@
-"""Zones as rviz shows them."""
+"""Zones as markers for rviz."""
 
 import math
 from typing import Iterable, List
@@ -15,7 +15,7 @@ COLOUR = ColorRGBA(0.55, 0.3, 0.95, 1.0)
 
 
 def zone_markers(places: Iterable[NamedPlace], frame_id: str) -> MarkerArray:
-    """A ring of each place's radius, an arrow the way the robot should face, and the place's name."""
+    """Return for each place a ring of its radius, an arrow in the direction of its yaw, and its name."""
     markers: List[Marker] = []
     for number, place in enumerate(places):
         markers += [_ring(number, place), _arrow(number, place), _name(number, place)]

@@ -313,7 +313,7 @@ class HeadlessMission:
 
     def _measure(self, order: MeasurePathLengths, base_in_map: Pose2) -> PathLengthsMeasured:
         lengths: List[Optional[float]] = []
-        for start, end in order.ways:
+        for start, end in order.legs:
             try:
                 corners = self._navigator.make_plan(start or base_in_map, end)
                 lengths.append(float(np.hypot(*np.diff(corners, axis=0).T).sum()))

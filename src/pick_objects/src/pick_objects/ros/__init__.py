@@ -1,1 +1,1 @@
-"""The parts of the node ``pick_objects`` that speak ROS."""
+"""ROS interface of pick_objects."""

@@ -1,4 +1,4 @@
-"""The command ``deliver``: sends a mission file to the action of a running robot and follows it."""
+"""Program ``deliver``: sends a mission file to the action of a running robot and reports its progress."""
 
 import argparse
 import sys
@@ -23,7 +23,7 @@ SUCCESS, FAILURE, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 
 
 def main(arguments: Optional[List[str]] = None) -> int:
-    """Returns 0 if all was delivered, 1 if not, 2 for bad input, 130 if Ctrl-C has cancelled it."""
+    """Run the program; return 0 if all was delivered, 1 if not, 2 for bad input, 130 after Ctrl-C."""
     options = _parser().parse_args(rospy.myargv(arguments)[1:])
     try:
         mission = options.mission.read_text(encoding="utf-8")
@@ -31,7 +31,7 @@ def main(arguments: Optional[List[str]] = None) -> int:
         return _fail(f"{options.mission}: cannot be read ({getattr(error, 'strerror', None) or error})")
     interrupted = threading.Event()
     on_signals(lambda _number, _frame: interrupted.set())
-    if not rosgraph.is_master_online():  # rospy would wait for one, deaf to everything
+    if not rosgraph.is_master_online():  # rospy would wait for one and ignore signals
         return _fail(f"no ROS master at {rosgraph.get_master_uri()}")
     init_node("deliver", anonymous=True)
     client = actionlib.SimpleActionClient("deliver", DeliverAction)
@@ -59,7 +59,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _follow(client, goal: DeliverGoal, name: str, interrupted: threading.Event, deadline: float) -> int:
-    """Sends the goal, tells how it goes; ``name``: the file it was read from."""
+    """Send the goal and print its progress; ``name``: file that it was read from."""
     latest = [0.0]
 
     def print_feedback(feedback):
@@ -74,10 +74,10 @@ def _follow(client, goal: DeliverGoal, name: str, interrupted: threading.Event, 
         if interrupted.is_set() or time.monotonic() > deadline or not server_is_ready(client):
             client.cancel_goal()
             if not _wait_for_end(client, time.monotonic() + CANCEL_SECONDS):
-                return _fail("the robot does not answer", FAILURE)
+                return _fail("the robot does not answer the cancellation", FAILURE)
             break
         time.sleep(POLL_SECONDS)
-    deliveries = getattr(client.get_result(), "deliveries", ())  # a server that is gone leaves no result
+    deliveries = getattr(client.get_result(), "deliveries", ())  # a server that died has no result
     for state in deliveries:
         _print_result(state)
     text = client.get_goal_status_text()
@@ -90,11 +90,11 @@ def _follow(client, goal: DeliverGoal, name: str, interrupted: threading.Event, 
 
 
 def _print_result(state: DeliveryState) -> None:
-    told = state.delivery
+    delivery = state.delivery
     ends = {state.DELIVERED: "delivered", state.CANCELLED: "cancelled"}
     reason = f" ({state.reason})" if state.reason and state.state == state.FAILED else ""
     end = ends.get(state.state, "not delivered") + reason
-    print(f"{told.name}: {told.object} from {told.source} to {told.destination}: {end}")
+    print(f"{delivery.name}: {delivery.object} from {delivery.source} to {delivery.destination}: {end}")
 
 
 def _wait_for_end(client, deadline: float) -> bool:

@@ -1,4 +1,4 @@
-"""The action ``deliver``: missions for a running robot."""
+"""Action ``deliver``: missions for a running robot."""
 
 import time
 from typing import Callable, List, Optional
@@ -17,10 +17,12 @@ FEEDBACK_SECONDS = 0.2
 
 
 class DeliverServer:
-    """Takes one goal after the other; a new one cancels the one before.
+    """Executes goals one after the other; a new goal cancels the current one.
 
-    ``understand`` makes a goal a mission or raises PlanarError; ``carry_out`` does it, calling what it is
-    given with the errand as it goes on.
+    Args:
+        topics: Publisher of the mission's state, for the feedback.
+        parse_goal: Converts a goal into a mission; raises PlanarError if it is not valid.
+        carry_out: Carries a mission out, and calls its second argument with the errand at each step.
     """
 
     def __init__(
@@ -36,7 +38,7 @@ class DeliverServer:
         self._server.start()
 
     def serve(self, pause: Callable[[], None]) -> None:
-        """Until shutdown; pauses between two looks at what has come."""
+        """Serve goals until shutdown; ``pause`` is called between two polls."""
         while not rospy.is_shutdown():
             if self._server.is_new_goal_available():
                 self._do(self._server.accept_new_goal())

@@ -1,4 +1,4 @@
-"""Tells how the mission stands: ``~state`` for people, ``~mission_state`` for programs."""
+"""Publishes the state of the mission: ``~state`` for people, ``~mission_state`` for programs."""
 
 from typing import Callable, Dict, List, Optional
 
@@ -15,7 +15,12 @@ from planar_ros.node.last_words import flush_and_close
 
 
 class MissionPublisher:
-    """Publishes changes, latched. ``locate`` says where the robot is in the map."""
+    """Publishes changes, latched.
+
+    Args:
+        frame_id: Frame of the places.
+        locate: Returns the estimated pose of the robot in the map.
+    """
 
     def __init__(self, frame_id: str, locate: Callable[[], Pose2]):
         self._frame_id, self._locate = frame_id, locate
@@ -26,7 +31,7 @@ class MissionPublisher:
         self._dropped_at: Dict[str, Pose2] = {}
 
     def publish(self, errand: Errand) -> None:
-        """Publishes what has changed since the last call, and says so."""
+        """Publish and log what has changed since the last call."""
         stages = tuple((job.delivery.name, job.stage) for job in errand.jobs)
         news = (errand, errand.state, errand.attempt, stages, tuple(errand.object_locations.items()))
         if news == self._published:
@@ -46,6 +51,7 @@ class MissionPublisher:
         flush_and_close(self._state, self._mission_state)
 
     def message(self, errand: Errand) -> msg.MissionState:
+        """Return the current state as a message."""
         now = rospy.Time.now()
         message = msg.MissionState(
             mission=errand.mission.name,
@@ -75,7 +81,7 @@ class MissionPublisher:
         )
 
     def _update_dropped(self, errand: Errand) -> None:
-        """An object that the robot had to leave is where the robot is then."""
+        """Locate objects that the robot had to leave at the robot's pose of that moment."""
         left = [
             name
             for name, location in errand.object_locations.items()

@@ -1,4 +1,4 @@
-"""The ROS node of pick_objects: carries missions out with move_base."""
+"""ROS node of pick_objects: carries out missions with move_base."""
 
 import sys
 import threading
@@ -33,7 +33,7 @@ POLL_SECONDS = 0.02
 
 
 class PickObjectsNode:
-    """Carries out the mission of a file, or the errand between the two zones, or what the action is sent."""
+    """Carries out the mission of a file, the errand between two zones, or goals of the action ``deliver``."""
 
     def __init__(self):
         self._step = LockstepClient.of_node()
@@ -42,7 +42,7 @@ class PickObjectsNode:
         self._map: Optional[OccupancyGrid] = None
         self._zones = load_places(self._settings.zones_file)
         self._mission = self._read_mission()
-        rospy.set_param("~places", sorted(self._places))  # for those who offer them to people
+        rospy.set_param("~places", sorted(self._places))  # for user interfaces
         self._errand: Optional[Errand] = None
         self._keepsake = ParameterCheckpoint() if self._settings.resume else None
         self._lock = threading.Lock()
@@ -59,7 +59,7 @@ class PickObjectsNode:
         )
 
     def work(self) -> FinishTask:
-        """Carries the mission out and says how it ended; one that serves goes on until shutdown."""
+        """Carry out the mission and return its end; with ``~serve`` continue until shutdown."""
         outcome = FinishTask(True, "served")
         if self._mission is not None:
             self._topics.publish(self._errand_for(self._mission))
@@ -75,7 +75,7 @@ class PickObjectsNode:
         return outcome
 
     def finish(self) -> None:
-        """To be called last: the end of the mission is heard. Who would be respawned stays until shutdown."""
+        """Publish the final state to all subscribers; with ``~resume`` keep running until shutdown."""
         self._topics.wait_until_heard()
         while self._settings.resume and not rospy.is_shutdown():
             self._step.pause(POLL_SECONDS)
@@ -93,7 +93,7 @@ class PickObjectsNode:
         return {**self._zones, **(self._mission.places if self._mission else {})}
 
     def _reload_mission(self, mission: Mission) -> Mission:
-        """The mission, now that there is a map to check it against."""
+        """Read the mission again, now that there is a map to check it against."""
         self._mission = self._read_mission() or mission
         return self._mission
 
@@ -125,7 +125,7 @@ class PickObjectsNode:
         return FinishTask(False, "interrupted")
 
     def _errand_for(self, mission: Mission) -> Errand:
-        """Where an earlier node of this name was cut short, if one was."""
+        """Resume the errand from a checkpoint, if there is one."""
         found = None if self._keepsake is None else self._keepsake.found
         errand = None if found is None else resume_errand(mission, found)
         return errand or Errand(mission)
@@ -136,7 +136,7 @@ class PickObjectsNode:
             rospy.logwarn("no map within %g s: the places are not checked", settings.map_timeout)
         self._step.join(takes_turns=True)
         if not self._wait_for(lambda: not self._missing(), settings.server_timeout):
-            return f"waited {settings.server_timeout:g} s in vain for {', '.join(self._missing())}"
+            return f"not ready after {settings.server_timeout:g} s: waiting for {', '.join(self._missing())}"
         return None
 
     def _missing(self) -> List[str]:
@@ -189,7 +189,7 @@ class PickObjectsNode:
         return response_kind(True, "")
 
     def _wait_for(self, is_there: Callable[[], bool], seconds: float) -> bool:
-        """Waits at most so many wall-clock seconds; whether it is there then."""
+        """Wait at most so many wall-clock seconds; return whether the condition is met."""
         deadline = time.monotonic() + seconds
         while not is_there() and time.monotonic() < deadline and not rospy.is_shutdown():
             self._step.pause(POLL_SECONDS)
