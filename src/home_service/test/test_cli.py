@@ -174,7 +174,7 @@ def test_a_custom_command_is_called_by_its_dotted_name(own, capsys):
 @pytest.mark.parametrize(
     "name, why",
     [
-        ("own_commands.greeting/Plain", "it is no dataclass"),
+        ("own_commands.greeting/Plain", "make it a dataclass"),
         ("own_commands.greeting/Idle", "is no command"),
         ("own_commands.greeting/Absent", "Absent"),
         ("no_such_package.module/Greet", "no_such_package"),

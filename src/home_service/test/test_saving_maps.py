@@ -28,11 +28,11 @@ def run(tmp_path):
 def test_a_map_saver_that_does_not_end_is_an_error_of_one_line(rosrun, run, monkeypatch):
     rosrun("exec sleep 60")
     monkeypatch.setattr(mapping, "SAVE_SECONDS", 0.2)
-    with pytest.raises(LaunchError, match="map_saver: not over after 0.2 s$"):
+    with pytest.raises(LaunchError, match="map_saver: did not exit within 0.2 s$"):
         mapping.save_map(run, None)
     monkeypatch.setattr(mapping, "SAVE_SECONDS", 2.0)
     rosrun("echo Waiting for the map; echo waiting for a map on /map >&2; exec sleep 60")
-    with pytest.raises(LaunchError, match="map_saver: .*; its last words: waiting for a map on /map$"):
+    with pytest.raises(LaunchError, match="map_saver: .*; last line of its log: waiting for a map on /map$"):
         mapping.save_map(run, None)
 
 

@@ -24,7 +24,7 @@ def test_a_proven_delivery_is_a_success():
     "change, reason",
     [
         ({"final_state": "going to dropoff"}, "state 'going to dropoff'"),
-        ({"deliveries": [record(dropoff_error=None)]}, "never said that it arrived at dropoff"),
+        ({"deliveries": [record(dropoff_error=None)]}, "never reported its arrival at dropoff"),
         ({"deliveries": [record(pickup_error=0.3)]}, "at pickup the robot truly stood 0.30 m off"),
         ({"deliveries": []}, "nothing was delivered"),
         ({"deliveries": [record(state="failed", reason="blocked")]}, "errand is failed: blocked"),

@@ -1,4 +1,4 @@
-"""The home service robot as a whole: launching, supervising and judging missions, and commanding it."""
+"""The home service robot as a whole: launch, supervise and judge missions; command the robot from Python."""
 
 from typing import TYPE_CHECKING
 
@@ -9,7 +9,7 @@ __all__ = ["Commander", "CommanderError", "Outcome", "Result"]
 
 
 def __getattr__(name: str):
-    """The commander's names, imported when they are first asked for: ROS takes its time."""
+    """Import the commander's names when they are first used, since importing ROS takes time."""
     if name not in __all__:
         raise AttributeError(f"module {__name__} has no attribute {name}")
     from home_service.ros import commander

@@ -1,4 +1,4 @@
-"""The way in: parse, run the command, answer with an exit code."""
+"""Entry point: parse, run the command, return an exit code."""
 
 import argparse
 import sys
@@ -19,7 +19,15 @@ FAILURE, BAD_INPUT = 1, 2
 
 
 def main(arguments: Optional[List[str]] = None, folder: CommandFolder = commands.FOLDER) -> int:
-    """Runs one of a folder; returns its exit code: 0 success, 1 failure, 2 bad input, 130 interrupted."""
+    """Run a command.
+
+    Args:
+        arguments: Command and its options; None: those of the process.
+        folder: Folder of the commands.
+
+    Returns:
+        Exit code: 0 success, 1 failure, 2 bad input, 130 interrupted.
+    """
     exit_when_interrupted()
     try:
         command = parse(sys.argv[1:] if arguments is None else arguments, folder)
@@ -41,10 +49,16 @@ def main(arguments: Optional[List[str]] = None, folder: CommandFolder = commands
 
 
 def parse(words: List[str], folder: CommandFolder = commands.FOLDER) -> Command:
-    """The command that the first word names, with the options that the others give.
+    """Parse a command and its options.
 
-    Ends the process on --help and on nonsense, in the name of the script that belongs to the command.
-    Raises PluginError if the word is a dotted name and names no command.
+    Exits on ``--help`` and on invalid options, with the name of the script that belongs to the command.
+
+    Args:
+        words: Name of the command, then its options. A name with a slash is a custom command.
+        folder: Folder of the commands.
+
+    Raises:
+        PluginError: If a dotted name is no command.
     """
     is_custom = bool(words) and "/" in words[0]
     if not is_custom and (not words or words[0] not in folder.names()):

@@ -1,4 +1,4 @@
-"""What a command is, and where commands are found."""
+"""Contract of a command, and how commands are found."""
 
 import importlib
 import pkgutil
@@ -9,25 +9,28 @@ from planar.plugins import PluginContract, PluginError, load_plugin
 
 
 class Command(Protocol):
-    """What a script does. A command is a module of the folder ``commands``; nothing else has to know of it.
+    """What a script runs: a module of the folder ``commands``; it needs no registration.
 
-    One of other people is a class anywhere on Python's path, called by its dotted name.
+    ``commands/count_walls.py`` defines the frozen dataclass ``CountWalls`` for ``scripts/count_walls.sh``.
+    Its fields are the options (see supervision.command_line), the first line of its docstring is the
+    summary. A custom command is a class anywhere on Python's path and is called by its dotted name.
 
-    ``commands/count_walls.py`` holds the frozen dataclass ``CountWalls``: its fields are the options (see
-    supervision.command_line), the first line of its docstring is the summary, ``run`` does it. It belongs to
-    ``scripts/count_walls.sh``.
-
-    Life cycle: the module is imported when its script is called, or ``--help`` asks for every summary; so it
-    imports at its top only what takes no time, and ``run`` imports the rest. The options are parsed into a
-    value of the class; ``run`` is called once. Ctrl-C ends the process at once until there is something to
-    take down: what makes that calls ``raise_when_interrupted`` first, as Run does.
+    Life cycle: the module is imported when its script is called, or when ``--help`` lists all summaries; so
+    import at its top only what loads fast, and the rest in ``run``. The options are parsed into an instance,
+    ``run`` is called once. Ctrl-C ends the process at once, unless ``raise_when_interrupted`` was called
+    first, as Run does, because there is something to clean up.
     """
 
     def run(self) -> int:
-        """Does it; returns the exit code: 0 success, 1 failure.
+        """Run the command.
 
-        Raises PlanarError for bad input (exit code 2), if possible before anything is started; LaunchError
-        if a graph does not come up; RunInterruptedError.
+        Returns:
+            Exit code: 0 success, 1 failure.
+
+        Raises:
+            PlanarError: Bad input (exit code 2), if possible before anything is started.
+            LaunchError: The graph did not start.
+            RunInterruptedError: Ctrl-C was pressed.
         """
 
 
@@ -35,19 +38,27 @@ CONTRACT = PluginContract("command", Command, None, "home_service.commands")
 
 
 class CommandFolder:
-    """The commands of a package's folder ``commands``: its ``name`` as a module, and its ``path``."""
+    """Commands in a package's folder.
+
+    Args:
+        name: Dotted name of the folder as a package.
+        path: Its ``__path__``.
+    """
 
     def __init__(self, name: str, path: Iterable[str]):
         self._name, self._path = name, path
 
     def names(self) -> List[str]:
-        """The commands that there are."""
+        """Return the names of the commands."""
         return [module.name for module in pkgutil.iter_modules(self._path)]
 
     def find(self, name: str) -> Type[Command]:
-        """The command of that name, or of a dotted name as ``my_package.my_module/MyCommand``.
+        """Return a command by its name or by a dotted name like ``my_package.my_module/MyCommand``.
 
-        No other is imported. Raises PluginError if there is none of that dotted name, or it lacks something.
+        No other command is imported.
+
+        Raises:
+            PluginError: If there is no such class, or it is no command.
         """
         if "/" in name:
             return _load_custom(name)
@@ -58,8 +69,8 @@ class CommandFolder:
 def _load_custom(name: str) -> Type[Command]:
     found = load_plugin(name, CONTRACT)
     if found is None:
-        raise PluginError(f"{name} is the dotted name of no command: my_package.my_module/MyCommand is one")
+        raise PluginError(f"{name} is no command; expected a name like my_package.my_module/MyCommand")
     has_options = is_dataclass(found)
     if not has_options:
-        raise PluginError(f"{name} is no command: it is no dataclass, whose fields are the options")
+        raise PluginError(f"{name} is no command: make it a dataclass whose fields are the options")
     return found

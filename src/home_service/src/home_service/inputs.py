@@ -1,4 +1,4 @@
-"""Everything that a command names, read before anything is started, so that a mistake is told first."""
+"""Inputs of a command, read before anything is started, so that a mistake is reported first."""
 
 from dataclasses import dataclass
 from typing import Iterable, Mapping
@@ -21,31 +21,36 @@ class WorldInputs:
 
 @dataclass(frozen=True, eq=False)
 class HomeInputs(WorldInputs):
-    """A stage with a map."""
+    """A world, its robot and its map."""
 
     grid: OccupancyGrid
 
 
 @dataclass(frozen=True, eq=False)
 class MissionInputs(HomeInputs):
-    """A home, what is to be done in it, and every place that has a name."""
+    """A mission, and all named places."""
 
     mission: Mission
     places: Mapping[str, NamedPlace]
 
 
 def read_world(options: WorldOptions) -> WorldInputs:
-    """Raises PlanarError, as all below, naming what cannot be read."""
+    """Read world and robot.
+
+    Raises:
+        PlanarError: As all functions below, with the name of what cannot be read.
+    """
     return WorldInputs(load_world(options.world), robot_named(options.robot))
 
 
 def read_home(options: HomeOptions) -> HomeInputs:
+    """Read world, robot and map."""
     world, grid = load_world(options.world), load_map(options.map)
     return HomeInputs(world, robot_named(options.robot), grid)
 
 
 def read_goals(options: HomeOptions, goals: Iterable[Pose2]) -> HomeInputs:
-    """A home with all the goals on its map; one in an obstacle is for move_base to judge."""
+    """Read a home and check that all goals lie on its map; move_base reports goals in obstacles."""
     home = read_home(options)
     for number, pose in enumerate(goals, 1):
         if not home.grid.contains(home.grid.cells_of([[pose.x, pose.y]]))[0]:
@@ -54,7 +59,7 @@ def read_goals(options: HomeOptions, goals: Iterable[Pose2]) -> HomeInputs:
 
 
 def read_errand(options: ErrandOptions) -> MissionInputs:
-    """The errand between the zones, which the robot must be able to stand in."""
+    """Read the errand between the zones; the robot must be able to stand in them."""
     home, zones = read_home(options), load_places(options.zones)
     ends = load_pickup_and_dropoff(options.zones)
     for place in ends:
@@ -66,7 +71,7 @@ def read_errand(options: ErrandOptions) -> MissionInputs:
 
 
 def read_mission(options: MissionOptions) -> MissionInputs:
-    """The mission, or the errand if there is none."""
+    """Read the mission, or the errand if no mission is given."""
     if options.mission is None:
         return read_errand(options)
     home, zones = read_home(options), load_places(options.zones)

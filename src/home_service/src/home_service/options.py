@@ -1,4 +1,4 @@
-"""What commands are told: the options that several of them share, as frozen dataclasses to inherit from."""
+"""Options shared by several commands, as frozen dataclasses to inherit from."""
 
 import argparse
 import math
@@ -11,7 +11,7 @@ from supervision.command_line import option
 ROOT = Path(__file__).resolve().parents[4]
 MAX_SPEED = 1000.0
 RUN_SECONDS = 900.0
-# The options that result.json tells, under their names.
+# Options that are written to result.json under their names.
 RESULT_OPTIONS = ("seed", "world", "robot", "map", "mission")
 
 
@@ -52,7 +52,7 @@ def _whole_number(text: str, least: int) -> int:
 
 @dataclass(frozen=True)
 class WorldOptions:
-    """The simulated world."""
+    """World, robot and seed."""
 
     world: Path = option(ROOT / "map/home.world", "SDF world", type=Path)
     robot: str = option("turtlebot_lidar", "robot profile of sim_bridge")
@@ -66,13 +66,13 @@ class HomeOptions(WorldOptions):
     map: Path = option(ROOT / "map/home.yaml", "map of that world", type=Path)
 
     def files(self) -> Dict[str, Any]:
-        """The files as launch files name them."""
+        """Return the files as arguments of launch files."""
         return {"map_file": self.map.resolve()}
 
 
 @dataclass(frozen=True)
 class DrivingOptions(HomeOptions):
-    """A home to drive in."""
+    """A home in which the robot navigates."""
 
     planner: str = option(
         "",
@@ -81,10 +81,14 @@ class DrivingOptions(HomeOptions):
     )
 
     def files(self) -> Dict[str, Any]:
-        """The files as launch files name them, and who plans. Raises SettingsError."""
+        """Return the files and the planner as arguments of launch files.
+
+        Raises:
+            SettingsError: If there is no such planner.
+        """
         if not self.planner:
             return super().files()
-        from move_base_lite.control import check_local_planner  # late: it takes its time
+        from move_base_lite.control import check_local_planner  # late: slow to import
 
         check_local_planner(self.planner)
         return {**super().files(), "planner": self.planner}
@@ -102,7 +106,7 @@ class ErrandOptions(HomeOptions):
 
 @dataclass(frozen=True)
 class MissionOptions(ErrandOptions, DrivingOptions):
-    """A home in which a mission may take the place of the errand between the zones."""
+    """A home with a mission, or with the errand between the zones."""
 
     mission: Optional[Path] = option(None, "YAML of deliveries", type=Path, metavar="FILE")
 
@@ -113,10 +117,15 @@ class MissionOptions(ErrandOptions, DrivingOptions):
 
 @dataclass(frozen=True)
 class LaunchPlan:
-    """What a run starts.
+    """A launch file and its arguments.
 
-    ``is_simulated``: whether a simulator is in it. ``bags``: the profile of what is recorded, if any.
-    ``comes_back``: the nodes that are started again if they die. ``package``: that of the launch file.
+    Attributes:
+        file: Name of the launch file.
+        arguments: Its arguments.
+        is_simulated: It starts a simulator.
+        bags: Profile of the topics to record; None: no bags.
+        respawned: Nodes that roslaunch restarts if they die.
+        package: Package of the launch file.
     """
 
     file: str
@@ -127,13 +136,13 @@ class LaunchPlan:
     package: str = "home_service"
 
     def with_respawn(self, *nodes: str) -> "LaunchPlan":
-        """The same, with these nodes started again if they die."""
+        """Return the plan with these nodes restarted if they die."""
         return replace(self, arguments={**self.arguments, "respawn": "true"}, respawned=nodes)
 
 
 @dataclass(frozen=True)
 class RunOptions:
-    """A run of a graph, which leaves a folder."""
+    """A run of a graph, which writes a run folder."""
 
     speed: Optional[float] = option(
         None,
@@ -153,41 +162,43 @@ class RunOptions:
 
     @property
     def name(self) -> str:
-        """The command's name, which is its module's."""
+        """Name of the command, which is that of its module."""
         return type(self).__module__.rpartition(".")[2]
 
     @property
     def is_interactive(self) -> bool:
+        """Whether Ctrl-C is the intended end of the run."""
         return False
 
     @property
     def tool(self) -> Optional[str]:
-        """The tool of the page in the browser that is open at first."""
+        """Tool of the cockpit that is open at first."""
         return None
 
     @property
     def time_limit(self) -> float:
-        """Wall-clock seconds that the run may take."""
+        """Wall-clock time that the run may take [s]."""
         if self.timeout is not None:
             return self.timeout
         return math.inf if self.is_interactive else RUN_SECONDS
 
     @property
     def effective_speed(self) -> float:
-        """Simulated seconds per second; 0: as fast as the nodes keep up."""
+        """Simulated seconds per wall-clock second; 0: as fast as the nodes keep up."""
         return float(self.has_view) if self.speed is None else self.speed
 
     @property
     def has_view(self) -> bool:
-        """Whether somebody is to look on."""
+        """Whether the run is shown in rviz or in the browser."""
         return self.rviz or self.shows_cockpit
 
     @property
     def shows_cockpit(self) -> bool:
+        """Whether the run is shown in the browser."""
         return self.web or self.web_port is not None
 
     def result_fields(self) -> Dict[str, Any]:
-        """The options that belong into result.json."""
+        """Return the options that are written to result.json."""
         given = {item.name: getattr(self, item.name) for item in fields(self) if item.name in RESULT_OPTIONS}
         paths = {name: str(value) for name, value in given.items() if isinstance(value, Path)}
         shown = {name: value for name, value in {**given, **paths}.items() if value is not None}
@@ -203,25 +214,25 @@ class GraphOptions(RunOptions, WorldOptions):
     )
 
     def launch(self, file: str, **arguments: object) -> LaunchPlan:
-        """What is started: a launch file of home_service with this world, robot and seed."""
+        """Return the plan for a launch file of home_service with this world, robot and seed."""
         world = {"world_file": self.world.resolve(), "robot": self.robot, "seed": self.seed}
         return LaunchPlan(file, {**world, **arguments}, bags=self.record)
 
 
-# Of the nodes that make a map, those that go on where they were.
+# Respawned nodes of a mapping run: they resume from a checkpoint.
 MAPPING_NODES, EXPLORING_NODES = ("slam_gmapping", "robot_state_publisher"), ("move_base", "explore")
 
 
 @dataclass(frozen=True)
 class MappingOptions(GraphOptions):
-    """A run that leaves a map."""
+    """A run that saves a map."""
 
     save: Optional[Path] = option(
         None, "write STEM.pgm and STEM.yaml, not to the run folder", type=Path, metavar="STEM"
     )
 
     def mapping(self, explores: bool) -> LaunchPlan:
-        """The simulation with SLAM and, if the robot explores by itself, all that it takes for that."""
+        """Return the plan for SLAM, with exploration if ``explores``."""
         if explores:
             return self.launch("mapping.launch", autostart="true").with_respawn(
                 *MAPPING_NODES, *EXPLORING_NODES

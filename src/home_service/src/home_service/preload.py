@@ -1,4 +1,4 @@
-"""The process of which a graph's nodes are forked: what they import, and the kernels that they load."""
+"""Preloaded process (forkserver) of which the nodes of a graph are forked: imports and numba kernels."""
 
 from supervision.fork_server import start_fork_server
 
@@ -13,12 +13,12 @@ NODES = (
 
 
 def preload_nodes() -> None:
-    """Has all that is made while this process goes on; nodes that it starts later are forked of that."""
+    """Start the preloaded process; nodes started later are forked of it."""
     start_fork_server([*NODES, "sim_bridge.views.section:warm_up", f"{__name__}:load_kernels"])
 
 
 def load_kernels() -> None:
-    """Those of localization and navigation, from the cache, or compiled if need be."""
+    """Load the kernels of localization and navigation from the cache, or compile them."""
     from amcl_lite import LocalizerSettings
     from amcl_lite.localizer import warm_up as warm_up_localizer
     from home_service.headless import LOCALIZATION_CONFIG, NAVIGATION_CONFIG

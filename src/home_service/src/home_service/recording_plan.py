@@ -1,4 +1,4 @@
-"""What is known of a recording beside its bags: the run that it was made in."""
+"""Launch plan for the playback of a recording."""
 
 import json
 import os
@@ -12,19 +12,24 @@ from sim_bridge import RobotError, robot_named
 
 
 def recording_plan(bags: Sequence[Path], stays: bool = False) -> LaunchPlan:
-    """All that is in the bags played, in the world and with the robot of their run, if it told them."""
+    """Plan the playback of bags in the world and with the robot of their run.
+
+    Args:
+        bags: Bags in the order of time.
+        stays: Keep running at the end, so that one can seek back.
+    """
     names = os.pathsep.join(str(path.resolve()) for path in bags)
-    arguments = {"bags": names, "stays": str(stays).lower(), **_stage_of(bags[0])}
+    arguments = {"bags": names, "stays": str(stays).lower(), **_world_and_robot(bags[0])}
     return LaunchPlan("recording.launch", arguments, is_simulated=False)
 
 
-def _stage_of(bag: Path) -> Dict[str, str]:
-    """Arguments for its launch file, by the result.json of the run that the bag is of, if there is one."""
+def _world_and_robot(bag: Path) -> Dict[str, str]:
+    """Return world and robot from the result.json of the run that recorded a bag, as launch arguments."""
     try:
-        told = json.loads(read_text(bag.resolve().parent.parent / "result.json"))
+        result = json.loads(read_text(bag.resolve().parent.parent / "result.json"))
     except (OSError, ValueError, RecursionError):
         return {}
-    world, robot = (told.get(key) if isinstance(told, dict) else None for key in ("world", "robot"))
+    world, robot = (result.get(key) if isinstance(result, dict) else None for key in ("world", "robot"))
     stage = {}
     if isinstance(world, str) and is_file(Path(world)):
         stage["world_file"] = world

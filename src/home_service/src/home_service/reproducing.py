@@ -1,4 +1,4 @@
-"""A run made again from what its folder tells of it."""
+"""Repeat a run from its folder and compare."""
 
 import json
 import shlex
@@ -11,11 +11,18 @@ from planar import SettingsError
 from planar.files.reading import read_text
 from supervision.versions import versions
 
-NOTHING = "nothing more"
+NOTHING = "end of the trace"
 
 
 def reproduce(folder: Path) -> int:
-    """Runs it again, into ``folder``/again; returns 0 if it was the same, 1 if not. Raises SettingsError."""
+    """Repeat a run into ``folder``/again and compare the traces.
+
+    Returns:
+        0 if the runs are the same, 1 if not.
+
+    Raises:
+        SettingsError: If the folder does not suffice to repeat the run.
+    """
     before, lines = read_result(folder), read_trace(folder)
     for name, version in versions().items():
         if before["versions"].get(name) != version:
@@ -44,7 +51,11 @@ def reproduce(folder: Path) -> int:
 
 
 def read_result(folder: Path) -> Dict[str, Any]:
-    """What result.json of a run folder tells. Raises SettingsError if that does not suffice to repeat it."""
+    """Read result.json of a run folder.
+
+    Raises:
+        SettingsError: If a field is missing that is needed to repeat the run.
+    """
     path = folder / "result.json"
     try:
         result = json.loads(read_text(path))

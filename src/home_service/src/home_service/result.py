@@ -1,4 +1,4 @@
-"""What a run leaves for programs: result.json, as ``config/result.schema.json`` describes it."""
+"""result.json of a run, as described by ``config/result.schema.json``."""
 
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -9,14 +9,16 @@ from supervision.run_folder import RESULT_FILE, write_result
 
 
 class ResultError(PlanarError):
-    """The result of a run cannot be written; for programs the run is no success then."""
+    """The result of a run cannot be written, so the run is no success for programs."""
 
 
 class ResultFile:
-    """Findings by the keys of the schema, from whoever found them; written anew whenever some have come.
+    """Fields of result.json, written again whenever some are added.
 
-    ``missing``: what could not be recorded or written, and why. ``gap``: the same of result.json itself, None
-    if it stands there as it should.
+    Attributes:
+        folder: Run folder.
+        missing: Files that could not be recorded or written, and why.
+        gap: Why result.json itself could not be written; None if it is complete.
     """
 
     def __init__(self, folder: Path):
@@ -26,28 +28,29 @@ class ResultFile:
         self.gap: Optional[str] = None
 
     def add(self, **findings: Any) -> None:
-        """Keeps findings; one that is known by the same key already gives way."""
+        """Set fields; existing ones of the same key are replaced."""
         self._findings.update(findings)
 
     @property
     def content(self) -> Dict[str, Any]:
+        """All fields."""
         return {**self._findings, "missing": self.missing}
 
     @property
     def all_missing(self) -> List[str]:
-        """What is missing, result.json too."""
+        """Everything that is missing, including result.json."""
         return self.missing if self.gap is None else [self.gap, *self.missing]
 
     @contextmanager
     def recording_gaps(self, name: str) -> Iterator[None]:
-        """Something of that name is made within; if it cannot be, it is missing."""
+        """Record in ``missing`` that the file ``name``, made within the context, could not be made."""
         try:
             yield
         except PlanarError as error:
             self.missing.append(f"{name}: {_reason(error)}")
 
     def write(self) -> None:
-        """One that tells less than is known by now is none: it makes room for the new one, or is gone."""
+        """Write all fields; delete an outdated file, if it cannot be replaced otherwise."""
         self.gap = self._attempt()
         if self.gap is not None:
             with suppress(OSError):
@@ -63,7 +66,7 @@ class ResultFile:
 
 
 def grouped_by_reason(missing: Iterable[str]) -> List[str]:
-    """What is missing, each reason once."""
+    """Group missing files by their reason, for people."""
     names: Dict[str, List[str]] = {}
     for gap in dict.fromkeys(missing):
         name, _, reason = gap.partition(": ")
@@ -72,5 +75,5 @@ def grouped_by_reason(missing: Iterable[str]) -> List[str]:
 
 
 def _reason(error: PlanarError) -> str:
-    """What an error says after the name of the file that stands in it."""
+    """Return the message of an error without the leading file name."""
     return str(error).rpartition(": ")[2]

@@ -1,4 +1,4 @@
-"""Compiles the kernels of every node ahead of time, so that none stalls when it is needed first."""
+"""Compile the kernels of all nodes ahead of time, so that no node has to compile when it starts."""
 
 import slam_lite.warming
 from explorer_lite.explorer import warm_up as warm_up_explorer
@@ -10,7 +10,7 @@ from move_base_lite.warmup import warm_up as warm_up_navigator
 
 
 def main() -> int:
-    """Does what each node does when it starts, then plays the mission."""
+    """Warm up each node's kernels, then run the headless mission; return its exit code."""
     load_kernels()
     warm_up_local_planners()
     warm_up_explorer()
@@ -19,6 +19,7 @@ def main() -> int:
 
 
 def warm_up_local_planners() -> None:
+    """Compile the kernels of every local planner."""
     for name in LOCAL_PLANNERS.names:
         warm_up_navigator(EpisodeConditions(name).navigation(NAVIGATION_CONFIG))
 

@@ -1,1 +1,1 @@
-"""What is wrong with a ROS graph. No ROS."""
+"""Diagnosis of a running ROS graph."""

@@ -1,15 +1,21 @@
-"""What is wrong with a ROS graph, told from what was found of it. No ROS."""
+"""Problems of a ROS graph, derived from a snapshot of it. No ROS."""
 
 from dataclasses import asdict, dataclass, field
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Set
 
-# Without these a node that listens to them cannot work; others, such as goals, come when somebody wants to.
+# Topics without which their subscribers cannot work; others, such as goals, are published on demand.
 ESSENTIAL_TOPICS = ("/scan", "/odom", "/map")
 
 
 @dataclass
 class NodeState:
-    """A node by what the master and itself say. ``waits_for``: in its own words."""
+    """A node.
+
+    Attributes:
+        name: Resolved name.
+        is_alive: It answers XML-RPC calls.
+        waits_for: What it publishes on ``~waiting_for``.
+    """
 
     name: str
     is_alive: bool = True
@@ -18,7 +24,14 @@ class NodeState:
 
 @dataclass
 class TopicState:
-    """Who sends and hears a topic; ``rate``: messages per simulated second, None if that was not measured."""
+    """A topic.
+
+    Attributes:
+        name: Resolved name.
+        publishers: Publishing nodes.
+        subscribers: Subscribing nodes.
+        rate: Messages per simulated second; None if not measured.
+    """
 
     name: str
     publishers: List[str] = field(default_factory=list)
@@ -28,7 +41,18 @@ class TopicState:
 
 @dataclass
 class GraphSnapshot:
-    """Everything that was found. ``parents``: of each frame, all that were told for it."""
+    """State of a ROS graph.
+
+    Attributes:
+        master: URI of the master; None if none is running.
+        other_masters: URIs of further masters on this machine.
+        nodes: All nodes.
+        topics: All topics.
+        parents: All parents published for each frame.
+        uses_simulated_time: ``/use_sim_time`` is true.
+        real_time_factor: Simulated per wall-clock second; None without a clock.
+        versions: Software versions.
+    """
 
     master: Optional[str] = None
     other_masters: List[str] = field(default_factory=list)
@@ -40,11 +64,12 @@ class GraphSnapshot:
     versions: Dict[str, str] = field(default_factory=dict)
 
     def topic(self, name: str) -> Optional[TopicState]:
+        """Return a topic by its name."""
         return next((topic for topic in self.topics if topic.name == name), None)
 
 
 def problems(snapshot: GraphSnapshot) -> List[str]:
-    """What keeps the graph from working, the causes before what follows from them."""
+    """Return what keeps the graph from working, causes before consequences."""
     if snapshot.master is None:
         return []
     return [
@@ -56,7 +81,7 @@ def problems(snapshot: GraphSnapshot) -> List[str]:
 
 
 def frame_chain(parents: Mapping[str, Set[str]], frame: str) -> List[str]:
-    """The frames from the root of the tree to ``frame``, as far as each has a parent."""
+    """Return the frames from the root of the tree to ``frame``."""
     found = [frame]
     while found[0] in parents and len(found) <= len(parents):
         found.insert(0, min(parents[found[0]]))
@@ -64,7 +89,7 @@ def frame_chain(parents: Mapping[str, Set[str]], frame: str) -> List[str]:
 
 
 def frame_branches(parents: Mapping[str, Set[str]]) -> List[str]:
-    """One line for each frame that ends a chain, or for all that hang on the same one."""
+    """Return a line for each chain of frames; leaves with the same parent share a line."""
     inner = {parent for several in parents.values() for parent in several}
     leaves: Dict[str, List[str]] = {}
     for frame in sorted(set(parents) - inner):
@@ -73,7 +98,7 @@ def frame_branches(parents: Mapping[str, Set[str]]) -> List[str]:
 
 
 def as_json(snapshot: GraphSnapshot) -> Dict[str, Any]:
-    """The findings and the problems, for programs."""
+    """Return the snapshot and its problems for programs."""
     content = asdict(snapshot)
     content["parents"] = {frame: sorted(parents) for frame, parents in sorted(snapshot.parents.items())}
     return {
@@ -84,7 +109,7 @@ def as_json(snapshot: GraphSnapshot) -> Dict[str, Any]:
 
 
 def as_text(snapshot: GraphSnapshot) -> List[str]:
-    """The findings and the problems, for people, line by line."""
+    """Return the snapshot and its problems for people, line by line."""
     lines = [f"versions  {', '.join(f'{name} {version}' for name, version in snapshot.versions.items())}"]
     if snapshot.master is None:
         return [*lines, "master    none: nothing is running"]
@@ -102,7 +127,7 @@ def _clock_problems(snapshot: GraphSnapshot) -> List[str]:
     if snapshot.uses_simulated_time and not has_clock:
         return ["use_sim_time is true, but nobody publishes /clock: every node waits for the time"]
     if has_clock and not snapshot.uses_simulated_time:
-        return ["/clock is published, but use_sim_time is not true: the nodes go by the wall clock"]
+        return ["/clock is published, but use_sim_time is not true: the nodes use the wall clock"]
     if has_clock and snapshot.real_time_factor == 0.0:
         return ["/clock stands still: the simulation is paused, or waits for a node"]
     return []
@@ -123,9 +148,11 @@ def _topic_problems(snapshot: GraphSnapshot) -> List[str]:
             and not topic.publishers
             and topic.name != "/clock"
         ):
-            found.append(f"nobody publishes {topic.name}, for which {', '.join(topic.subscribers)} listens")
+            found.append(
+                f"no node publishes {topic.name}, to which {', '.join(topic.subscribers)} subscribes"
+            )
         elif topic.rate == 0.0 and topic.publishers and snapshot.real_time_factor != 0.0:
-            found.append(f"nothing comes on {topic.name} from {', '.join(topic.publishers)}")
+            found.append(f"no messages on {topic.name} from {', '.join(topic.publishers)}")
     return found
 
 
@@ -137,7 +164,7 @@ def _frame_problems(snapshot: GraphSnapshot) -> List[str]:
     ]
     roots = {parent for several in snapshot.parents.values() for parent in several} - set(snapshot.parents)
     if len(roots) > 1:
-        found.append(f"the frames make {len(roots)} trees, with the roots {', '.join(sorted(roots))}")
+        found.append(f"the frames form {len(roots)} trees, with the roots {', '.join(sorted(roots))}")
     return found
 
 
@@ -149,7 +176,7 @@ def _clock(snapshot: GraphSnapshot) -> str:
     if not snapshot.uses_simulated_time:
         return "wall clock (use_sim_time is not true)"
     if snapshot.real_time_factor is None:
-        return "simulated, but nobody tells it"
+        return "simulated, but no node publishes it"
     return f"simulated, {snapshot.real_time_factor:.2f} x real time"
 
 
@@ -160,7 +187,7 @@ def _node_line(node: NodeState) -> str:
 
 
 def _topic_line(topic: TopicState) -> str:
-    return f"{topic.name}: {topic.rate:.1f} Hz from {', '.join(topic.publishers) or 'nobody'}"
+    return f"{topic.name}: {topic.rate:.1f} Hz from {', '.join(topic.publishers) or 'no node'}"
 
 
 def _column(title: str, entries: Sequence[str]) -> List[str]:

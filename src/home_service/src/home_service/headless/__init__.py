@@ -1,4 +1,4 @@
-"""The whole mission in one process, without ROS."""
+"""Headless simulation: a whole mission in one process, without ROS."""
 
 from home_service.headless.mission import (
     LOCALIZATION_CONFIG,

@@ -1,4 +1,4 @@
-"""The solid objects of a mission as boxes in a simulation without ROS."""
+"""Solid objects of a mission as boxes in a headless simulation."""
 
 from typing import List, Sequence, Set
 
@@ -11,7 +11,7 @@ from sim_bridge.simulation import box_on_floor
 
 
 class HeadlessBoxes:
-    """Moves them as the mission goes on."""
+    """Moves the boxes as the mission proceeds."""
 
     def __init__(self, simulation: Simulation, grid: OccupancyGrid):
         self._simulation = simulation
@@ -20,7 +20,12 @@ class HeadlessBoxes:
         self._spawned: Set[str] = set()
 
     def update(self, solids: Sequence[SolidBox], robot: Pose2) -> None:
-        """Brings the boxes to where they belong; ``robot``: where it truly is now."""
+        """Move the boxes to where they belong.
+
+        Args:
+            solids: All solid objects.
+            robot: True pose of the robot.
+        """
         for order in self._placer.update(solids, robot):
             if isinstance(order, PlaceBox):
                 self._place(order, robot)
@@ -42,7 +47,7 @@ class HeadlessBoxes:
 
 
 def boxes_of(errand: Errand) -> List[SolidBox]:
-    """The solid objects, and where they belong now."""
+    """Return the solid objects of an errand and where they are now."""
     objects = [(errand.mission.object_named(name), where) for name, where in errand.object_locations.items()]
     return [
         SolidBox(item.name, item.size, None if where.is_carried else where.pose)

@@ -1,4 +1,4 @@
-"""Runs with a fault beside the same runs without it."""
+"""Episodes with a fault, each paired with the baseline of the same seed."""
 
 from dataclasses import dataclass
 from datetime import date
@@ -10,7 +10,7 @@ from home_service.judging.verdict import collision
 from sim_bridge.faults import KINDS, Fault, default_strength
 from supervision.versions import provenance
 
-# Simulated seconds: on the way to the object.
+# Start of the fault, while the robot drives to the object [s].
 START = 8.0
 HEAD = """# Faults
 
@@ -35,7 +35,17 @@ Every key of a fault, and how to add a kind: [faults](../reference/faults.md).
 
 @dataclass(frozen=True)
 class FaultComparisonRow:
-    """What a kind of fault does to the mission, over all seeds."""
+    """Effect of a kind of fault on the mission, over all seeds.
+
+    Attributes:
+        kind: Kind of fault.
+        runs: Number of episodes.
+        successes: Successful ones.
+        touches: What was collided with, in words.
+        false_verdicts: Episodes in which the robot reported a false outcome.
+        seconds_lost: Mean simulated time beyond the baseline, of successful episodes [s].
+        ending: First diagnosis, or reason of a failure.
+    """
 
     kind: str
     runs: int
@@ -47,17 +57,18 @@ class FaultComparisonRow:
 
     @property
     def fails_needlessly(self) -> bool:
-        """Whether most runs failed that need not have."""
+        """Whether most episodes failed although the fault is survivable."""
         return KINDS[self.kind].survivable and 2 * self.successes < self.runs
 
     @property
     def line(self) -> str:
-        """For the terminal."""
-        told = f"{self.kind}: {self.successes} of {self.runs} succeeded, {self.seconds_lost:.1f} s lost"
-        return ", ".join(filter(None, (told, self.touches, self.ending)))
+        """Line for the terminal."""
+        summary = f"{self.kind}: {self.successes} of {self.runs} succeeded, {self.seconds_lost:.1f} s lost"
+        return ", ".join(filter(None, (summary, self.touches, self.ending)))
 
     @property
     def table_row(self) -> str:
+        """Row of the Markdown table."""
         kind = KINDS[self.kind]
         what = (kind.__doc__ or "").partition("\n")[0].rstrip(".")
         strength = f"{kind.strength[0]:g} {kind.unit}" if kind.unit else ""
@@ -75,7 +86,15 @@ class FaultComparisonRow:
 
 
 class FaultComparison:
-    """Plays a mission with a fault and without, for each of ``seeds``."""
+    """Runs a mission with and without a fault for each seed.
+
+    Args:
+        home: Mission and its world.
+        is_errand: The mission is the errand between the zones, whose marker is judged, too.
+        planner: Local planner; empty: the preset's.
+        seeds: Seeds of the episodes.
+        timeout: Simulated time limit of an episode [s].
+    """
 
     def __init__(
         self, home: MissionInputs, is_errand: bool, planner: str, seeds: Sequence[int], timeout: float
@@ -85,7 +104,7 @@ class FaultComparison:
         self._baselines: Dict[int, EpisodeResult] = {}
 
     def compare(self, kind: str) -> FaultComparisonRow:
-        """What the kind of fault does."""
+        """Return the effect of a kind of fault."""
         fault = Fault(kind, START, strength=default_strength(kind))
         pairs = [(self._baseline(seed), self._run_episode(seed, (fault,))) for seed in self._seeds]
         won = [(baseline, run) for baseline, run in pairs if run.verdict.success]
@@ -118,12 +137,18 @@ class FaultComparison:
 
 
 def fault_report(rows: Sequence[FaultComparisonRow], seeds: Sequence[int], timeout: float) -> str:
-    """The table, as a page of the documentation; how it was made: ``seeds`` in a row, simulated seconds."""
+    """Return the page of the documentation with the table.
+
+    Args:
+        rows: Rows of the table.
+        seeds: Consecutive seeds.
+        timeout: Simulated time limit of an episode [s].
+    """
     runs = len(seeds)
-    told = "one seed" if runs == 1 else f"{runs} seeds"
+    seed_count = "one seed" if runs == 1 else f"{runs} seeds"
     head = HEAD.format(
         start=START,
-        seeds=told,
+        seeds=seed_count,
         seed=seeds[0],
         runs=runs,
         timeout=timeout,
@@ -133,7 +158,7 @@ def fault_report(rows: Sequence[FaultComparisonRow], seeds: Sequence[int], timeo
 
 
 def _is_false(run: EpisodeResult) -> bool:
-    """Whether the robot said something of its mission that is not so."""
+    """Whether the robot reported an outcome of its mission that is not true."""
     records = run.mission_record.deliveries
     is_delivered = bool(records) and all(record.failure is None for record in records)
     return (run.mission_record.final_state == "delivered") != is_delivered

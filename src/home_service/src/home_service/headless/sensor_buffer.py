@@ -1,4 +1,4 @@
-"""What a rehearsed robot feels, and whether it can be so."""
+"""Odometry history and plausibility checks of a headless simulation."""
 
 import math
 from collections import deque
@@ -10,15 +10,18 @@ from planar import Pose2, Scan, Twist2
 from sim_bridge import StepResult
 from sim_bridge.sensors.odometry import Odometer
 
-# Steps of the simulation for which odometry is remembered, as tf does.
+# Simulation steps for which odometry is kept, as in tf.
 HISTORY_STEPS = 500
 
 
 class SensorBuffer:
-    """Keeps odometry, as tf does, and watches over the sensors, as move_base does.
+    """Stores odometry as tf does, and checks the sensors as move_base does.
 
-    ``patience``: seconds of a sensor that cannot be trusted, after which a goal is given up.
-    ``diagnosis``: the first complaint.
+    Args:
+        patience: Time after which a goal is given up if a sensor stays implausible [s].
+
+    Attributes:
+        diagnosis: First implausibility; empty if there was none.
     """
 
     def __init__(self, patience: float):
@@ -30,7 +33,10 @@ class SensorBuffer:
         self._commanded = Twist2()
 
     def update(self, observation: StepResult, command: Twist2) -> None:
-        """Takes in a step; a robot that is stopped for a sensor is still told to go on."""
+        """Add a simulation step.
+
+        A robot that is stopped because of a sensor is still checked against the last command before that.
+        """
         if self._implausible_since is None:
             self._commanded = command
         if Odometer.name in observation.readings or not self._odometry:
@@ -42,33 +48,33 @@ class SensorBuffer:
             self._watch.add_scan(scan.ranges, scan.range_min, scan.range_max, span)
 
     def base_in_odom_at(self, stamp: float) -> Pose2:
-        """Where odometry had the robot at a time, or as near to it as is remembered."""
+        """Return the odometry pose that is closest to a stamp."""
         nearest, base_in_odom = math.inf, self._odometry[-1][1]
         for stamp_of, known in reversed(self._odometry):
             if abs(stamp_of - stamp) >= nearest:
-                break  # stamps rise, so that all before are farther off
+                break  # stamps increase, so all earlier ones are farther away
             nearest, base_in_odom = abs(stamp_of - stamp), known
         return base_in_odom
 
     def move_to_present(self, scan: Scan, now: float, base_in_odom: Pose2) -> Scan:
-        """A scan that comes late, as if taken from the present pose: what move_base makes of it."""
+        """Transform a delayed scan to the present pose, as move_base does."""
         if scan.stamp == now:
             return scan
         moved = base_in_odom.inverse() @ self.base_in_odom_at(scan.stamp)
         return replace(scan, laser_in_base=moved @ scan.laser_in_base)
 
     def implausibility(self, now: float) -> Optional[str]:
-        """Which sensor cannot be trusted; None if all can."""
-        complaint = self._watch.fault(now)
-        if complaint is None:
+        """Return which sensor is implausible, and why; None if all are plausible."""
+        implausibility = self._watch.fault(now)
+        if implausibility is None:
             self._implausible_since = None
         elif self._implausible_since is None:
             self._implausible_since = now
-        self.diagnosis = self.diagnosis or complaint or ""
-        return complaint
+        self.diagnosis = self.diagnosis or implausibility or ""
+        return implausibility
 
     def is_patience_exceeded(self, now: float) -> bool:
-        """Whether a sensor has been wrong for too long; asked anew afterwards."""
+        """Whether a sensor has been implausible for too long; restarts the interval if so."""
         if self._implausible_since is None or now - self._implausible_since <= self._patience:
             return False
         self._implausible_since = now

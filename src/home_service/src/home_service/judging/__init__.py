@@ -1,1 +1,1 @@
-"""Whether a run did what it promised, by ground truth. No ROS."""
+"""Judgement of runs by ground truth. No ROS."""

@@ -1,8 +1,8 @@
-"""What a run asks of those who watch it from outside.
+"""Contracts of the observers of a run.
 
-Both are made before there is a graph, and started by the run once there is a master and the process is a
-node. Nothing that they do may slow the run down. At the end they are asked for what they saw, also if they
-were never started because the graph did not come up.
+Both are created before the graph and started once there is a master and the process is a node. They must not
+slow the run down. At the end they are asked for their results, even if they were never started because the
+graph did not come up.
 """
 
 from typing import Any, Dict, Protocol
@@ -11,26 +11,26 @@ from run_report import RunRecord
 
 
 class Judge(Protocol):
-    """Sees what truly happens, and has the figures of it."""
+    """Observes ground truth and computes figures."""
 
     def start(self) -> None:
-        """From now on it watches."""
+        """Start to observe."""
 
     def has_truth(self) -> bool:
-        """Whether the truth about the robot has been seen."""
+        """Whether the true pose of the robot has been received."""
 
     def status(self) -> str:
-        """How things stand, in a line for people."""
+        """Return the current state in one line for people."""
 
     def result_fields(self) -> Dict[str, Any]:
-        """What belongs into result.json, by its keys; nothing if it was not started."""
+        """Return fields of result.json; none if it was not started."""
 
 
 class Recorder(Protocol):
-    """Keeps what the report shows."""
+    """Records what the report shows."""
 
     def start(self) -> None:
-        """From now on it keeps."""
+        """Start to record."""
 
     def record(self) -> RunRecord:
-        """All that has been seen so far."""
+        """Return everything recorded so far."""

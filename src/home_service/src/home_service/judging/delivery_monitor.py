@@ -1,4 +1,4 @@
-"""Follows the deliveries of a mission and measures where the robot truly stood at each arrival."""
+"""Track the deliveries of a mission and measure the true position error at each arrival."""
 
 from typing import Callable, Dict, List, Mapping, Optional
 
@@ -11,7 +11,13 @@ ENDS = (DeliveryStage.DELIVERED, DeliveryStage.FAILED, DeliveryStage.CANCELLED)
 
 
 class DeliveryMonitor:
-    """Keeps a record of each delivery. ``records`` is changed in place; ``log`` is told of each arrival."""
+    """Keeps a record of each delivery.
+
+    Args:
+        places: Places by name; more may be added later.
+        records: List of the records, extended and updated in place.
+        log: Called with a line at each arrival.
+    """
 
     def __init__(
         self, places: Mapping[str, NamedPlace], records: List[DeliveryRecord], log: Callable[[str], None]
@@ -22,10 +28,18 @@ class DeliveryMonitor:
     def update(
         self, delivery: Delivery, stage: DeliveryStage, attempts: int, reason: str, truth: Optional[Pose2]
     ) -> None:
-        """A delivery has come to ``stage`` while the robot truly stood at ``truth``, if that is known."""
+        """Update the record of a delivery.
+
+        Args:
+            delivery: The delivery.
+            stage: Its current stage.
+            attempts: Goals sent for it so far.
+            reason: Why it failed.
+            truth: True pose of the robot in the world at that time, if known.
+        """
         record = next((known for known in reversed(self._records) if known.name == delivery.name), None)
         is_another = stage not in ENDS and self._stages.get(delivery.name) in ENDS
-        if record is None or is_another:  # a robot that serves is sent one mission after the other
+        if record is None or is_another:  # with --serve, missions of the same name may follow each other
             self._stages.pop(delivery.name, None)
             record = DeliveryRecord(
                 delivery.name, delivery.object_name, delivery.source, delivery.destination

@@ -1,4 +1,4 @@
-"""How good a map is, by the world that it was made in."""
+"""Quality of a map, by the world that it was made in."""
 
 from typing import Optional
 
@@ -14,7 +14,7 @@ FINE_RESOLUTION = 0.01
 
 
 def score_against_world(grid: OccupancyGrid, world: World, robot: RobotProfile) -> MapScore:
-    """A map against what the robot's laser could have seen of the world from where the robot can get."""
+    """Compare a map with what the laser could have measured of the world from where the robot can drive."""
     height = float(robot.laser.pose_in_base[2, 3])
     truth, fine_truth = (true_map(world, height, resolution) for resolution in (0.05, FINE_RESOLUTION))
     return score_map(grid, truth, robot_radius=robot.radius, sight=robot.laser.sight, fine_truth=fine_truth)
@@ -23,12 +23,19 @@ def score_against_world(grid: OccupancyGrid, world: World, robot: RobotProfile) 
 def judge_map(
     score: MapScore, distance_to_start: float, failure: Optional[str], collision: Optional[str]
 ) -> Verdict:
-    """Success if the map is good and the robot, without a collision, is back where it started.
+    """Judge a mapping run.
 
-    ``way_home``: how far it truly stands from there, metres. ``failure``: why the run was cut short, if so.
+    Args:
+        score: Score of the map.
+        distance_to_start: True distance of the robot from its start [m].
+        failure: Why the run was cut short, if so.
+        collision: What the robot collided with, if anything.
+
+    Returns:
+        Success if the map is good and the robot is back at its start without a collision.
     """
     is_away = distance_to_start > ARRIVAL_TOLERANCE
-    complaints = (
+    failures = (
         failure,
         f"the robot truly stands {distance_to_start:.2f} m from where it started" if is_away else None,
         f"recall below {LEAST_RECALL}" if score.recall < LEAST_RECALL else None,
@@ -40,5 +47,5 @@ def judge_map(
         f"recall {score.recall:.3f}, precision {score.precision:.3f}, {score.doubled_walls} doubled walls, "
         f"back {distance_to_start:.2f} m from the start"
     )
-    reasons = "; ".join(filter(None, complaints))
+    reasons = "; ".join(filter(None, failures))
     return Verdict(not reasons, f"{reasons} ({figures})" if reasons else figures)

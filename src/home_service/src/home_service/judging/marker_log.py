@@ -1,4 +1,4 @@
-"""What the markers of objects have shown, in words."""
+"""Changes of the objects' markers, in words."""
 
 from dataclasses import dataclass
 from typing import Iterable, List, Mapping
@@ -7,13 +7,20 @@ from home_service.judging.verdict import MissionRecord
 from planar import Pose2
 from planar.maps.places import NamedPlace
 
-# Name of the errand's object; those of a mission have names of their own.
+# Name of the errand's marker; a mission's markers are named after their objects.
 PARCEL = "parcel"
 
 
 @dataclass(frozen=True)
 class MarkerState:
-    """A marker of the object ``name``: at a pose of the map, on the robot, or taken away."""
+    """A received marker.
+
+    Attributes:
+        name: Object that it shows.
+        pose: Pose in the map.
+        is_carried: It is shown on the robot.
+        is_hidden: It was deleted.
+    """
 
     name: str
     pose: Pose2
@@ -22,18 +29,24 @@ class MarkerState:
 
 
 class MarkerLog:
-    """Fills the ``markers`` of a ledger, one entry for each change. ``places`` may become more."""
+    """Fills ``markers`` of a mission record, one entry a change.
+
+    Args:
+        places: Places by name; more may be added later.
+        mission_record: Record to fill.
+    """
 
     def __init__(self, places: Mapping[str, NamedPlace], mission_record: MissionRecord):
         self._places, self._mission_record = places, mission_record
         self._pending: List[MarkerState] = []
 
     def add(self, marker: MarkerState) -> None:
+        """Add a received marker."""
         self._pending.append(marker)
         self.flush()
 
     def flush(self) -> None:
-        """An object is at one of the ends of its deliveries; until one is known, its markers wait."""
+        """Process markers of objects whose deliveries are known; the others wait."""
         known = {PARCEL, *(record.object for record in self._mission_record.deliveries)}
         markers, self._pending = self._pending, []
         for marker in markers:
@@ -56,5 +69,5 @@ class MarkerLog:
         if self._mission_record.markers[-1:] != [event]:
             self._mission_record.markers.append(event)
 
-    def _nearest(self, shown: Pose2, names: Iterable[str]) -> str:
-        return min(names, key=lambda name: self._places[name].distance_to(shown))
+    def _nearest(self, pose: Pose2, names: Iterable[str]) -> str:
+        return min(names, key=lambda name: self._places[name].distance_to(pose))

@@ -1,4 +1,4 @@
-"""People whom a robot meets: where they were, and who ran into whom."""
+"""Contacts between the robot and pedestrians, and who is at fault."""
 
 import math
 from typing import List, Sequence, Tuple
@@ -8,12 +8,19 @@ import numpy as np
 from planar import Pose2, Twist2
 from sim_bridge import Simulation, StepResult
 
-# m/s towards a person below which a robot runs into nobody.
+# Speed towards a person below which the robot is not at fault [m/s].
 STANDING_SPEED = 0.05
 
 
 class PedestrianContacts:
-    """Told of each step. ``people_at_fault``: the names of those who did, each once."""
+    """Attributes contacts to the robot or to pedestrians, and records their tracks; call it at each step.
+
+    Args:
+        simulation: Simulation with the pedestrians.
+
+    Attributes:
+        people_at_fault: Names of pedestrians that walked into the robot, each once.
+    """
 
     def __init__(self, simulation: Simulation):
         self._crowd = simulation.scene.crowd
@@ -22,24 +29,24 @@ class PedestrianContacts:
         self.people_at_fault: List[str] = []
 
     def robot_collisions(self, observation: StepResult) -> Sequence[str]:
-        """What the robot has bumped into, without the people who ran into it."""
+        """Return what the robot has collided with, without pedestrians that walked into it."""
         people = [name for name in observation.contacts if name in self._crowd.links]
-        theirs = {name for name in people if not self._is_robot_at_fault(name)}
-        self.people_at_fault += sorted(theirs - set(self.people_at_fault))
+        others = {name for name in people if not self._is_robot_at_fault(name)}
+        self.people_at_fault += sorted(others - set(self.people_at_fault))
         self._before = (observation.base_in_world, observation.twist)
-        return [name for name in observation.contacts if name not in theirs]
+        return [name for name in observation.contacts if name not in others]
 
     def record(self) -> None:
-        """Where everybody is now."""
+        """Record the current state of all pedestrians."""
         self._track.append(self._crowd.rows.copy())
 
     @property
     def track(self) -> np.ndarray:
-        """(T, N, 5) at each time noted: x, y, velocity by x and y, radius of each."""
+        """(T, N, 5), x, y, velocity in x and y, radius of N pedestrians at each recorded time."""
         return np.array(self._track)
 
     def _is_robot_at_fault(self, name: str) -> bool:
-        """Whether it came on faster than the person did, as both moved before they touched."""
+        """Whether the robot approached faster than the person, by the velocities before the contact."""
         robot, twist = self._before
         x, y, v_x, v_y, _ = self._crowd.rows[self._crowd.links.index(name)].tolist()
         distance = max(math.hypot(x - robot.x, y - robot.y), 1e-9)

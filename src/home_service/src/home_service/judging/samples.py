@@ -1,18 +1,22 @@
-"""What is kept of a series of numbers, however long it becomes."""
+"""Bounded storage for a time series."""
 
 from array import array
 
 import numpy as np
 
 SAMPLES_PER_SECOND = 10.0
-# Of sixteen minutes.
+# Samples of sixteen minutes.
 MAX_SAMPLES = 9_600
 
 
 class Samples:
-    """Rows of so many ``columns``, the first being the stamp in seconds: ten a second.
+    """Rows of numbers, the first being the stamp [s], at ten samples per simulated second.
 
-    When there are more than ``most``, every other one goes, and from then on half as many come.
+    When there are more than ``most``, every other sample is dropped and the rate halved.
+
+    Args:
+        columns: Numbers in a row.
+        most: Maximum number of rows.
     """
 
     def __init__(self, columns: int, most: int = MAX_SAMPLES):
@@ -21,16 +25,17 @@ class Samples:
         self._numbers = array("d")
 
     def is_due(self, stamp: float) -> bool:
-        """Whether a sample of this stamp is one of those kept: the first of each tenth of a second."""
+        """Whether a sample with this stamp is to be stored: the first in each sampling interval."""
         return not self._numbers or self._slot(stamp) != self._slot(self._numbers[-self._columns])
 
     def add(self, *row: float) -> None:
+        """Append a row."""
         self._numbers.extend(row)
         if len(self._numbers) > self._most * self._columns:
             self._thin()
 
     def rows(self) -> np.ndarray:
-        """All that are kept (N, columns)."""
+        """Return all stored rows, (N, columns)."""
         return np.array(self._numbers).reshape(-1, self._columns)
 
     def _slot(self, stamp: float) -> int:

@@ -1,4 +1,4 @@
-"""What of a run must be the same when it is repeated: the truth and the decisions, by simulated time."""
+"""Trace of a run: ground truth and decisions by simulated time, which must be equal in a repeated run."""
 
 import hashlib
 import math
@@ -11,14 +11,21 @@ from typing import IO, Iterator, List, NamedTuple, Optional, Sequence, Set, Tupl
 from planar import FileWriteError, SettingsError, write_atomically
 
 FILE = "trace.txt"
-# Nanoseconds before the end from which on messages may still be under way.
+# Time before the end in which messages may still be in flight [ns].
 IN_FLIGHT = 300_000_000
-# Nanoseconds after which none comes any more, and how many entries a run of some minutes has.
+# Time after which no more entries arrive [ns], and number of entries of a run of some minutes.
 LATE, MAX_IN_MEMORY = 10_000_000_000, 10_000
 
 
 class TraceEntry(NamedTuple):
-    """A message: its stamp, ns; the topic; its node; what it says."""
+    """A message.
+
+    Attributes:
+        stamp: Stamp [ns].
+        topic: Resolved topic.
+        node: Publishing node.
+        text: Content.
+    """
 
     stamp: int
     topic: str
@@ -30,7 +37,7 @@ class TraceEntry(NamedTuple):
 
 
 class TraceDifference(NamedTuple):
-    """Where two runs first differ: entries of the one and of the other, None after the end."""
+    """First difference of two traces: the entry of each, None after its end."""
 
     here: Optional[str]
     there: Optional[str]
@@ -54,6 +61,7 @@ class Trace:
         self._lock = threading.Lock()
 
     def add(self, entry: TraceEntry) -> None:
+        """Add an entry."""
         with self._lock:
             if self._write_error is None:
                 self._entries.append(entry)
@@ -61,21 +69,25 @@ class Trace:
                 self._spill(max(each.stamp for each in self._entries) - LATE)
 
     def add_unstamped(self, text: str) -> None:
-        """Something without a time: its place among its like is what counts."""
+        """Add text without a stamp; only the order of such texts is compared."""
         if self._unstamped[-1:] != [text]:
             self._unstamped.append(text)
 
     def start(self, stamp: int) -> None:
-        """A goal was set; the first one counts."""
+        """Start the trace at a goal; the first one counts."""
         self._start = stamp if self._start is None else min(stamp, self._start)
 
     def end(self, outcome: TraceEntry) -> None:
-        """Something that was asked for has come to this; the last one counts."""
+        """End the trace with the outcome of a request; the last one counts."""
         self._outcomes.add(outcome)
         self._end = outcome.stamp if self._end is None else max(outcome.stamp, self._end)
 
     def lines(self) -> List[str]:
-        """The entries in order. Raises FileWriteError if some were lost for want of room."""
+        """Return the entries in order.
+
+        Raises:
+            FileWriteError: If entries were lost because the temporary file could not be written.
+        """
         with self._lock:
             if self._write_error is not None:
                 raise FileWriteError(f"{FILE}: cannot be written ({self._write_error})")
@@ -85,18 +97,18 @@ class Trace:
             return [*self._spilled_lines(last), *map(str, self._entries_until(last)), *self._unstamped]
 
     def content(self) -> bytes:
-        """What is written of it; empty if nothing was driven. Raises FileWriteError as ``lines`` does."""
+        """Return the content of trace.txt, empty if nothing was driven; raises as ``lines``."""
         return "".join(f"{line}\n" for line in self.lines()).encode()
 
     def _entries_until(self, last: int, last_outcome: float = math.inf) -> List[TraceEntry]:
-        """What counts of those in memory, in order."""
+        """Return the relevant entries in memory, in order."""
         if self._start is None:
             return []
         seen = {entry for entry in self._entries if self._start <= entry.stamp <= last}
         return sorted(seen | {one for one in self._outcomes if self._start <= one.stamp <= last_outcome})
 
     def _spill(self, last: int) -> None:
-        """What is that old."""
+        """Move entries up to a stamp to the temporary file."""
         try:
             if self._spill_file is None:
                 self._spill_file = tempfile.TemporaryFile("w+", encoding="utf-8")  # noqa: SIM115
@@ -110,7 +122,7 @@ class Trace:
         self._outcomes -= {one for one in self._outcomes if one.stamp <= last}
 
     def _spilled_lines(self, last: int) -> Iterator[str]:
-        """What counts of those in the file, which may end after ``last``."""
+        """Yield the relevant lines of the temporary file, which may go beyond ``last``."""
         if self._spill_file is not None:
             self._spill_file.seek(0)
             for line in self._spill_file:
@@ -120,17 +132,21 @@ class Trace:
 
 
 def hash_of(content: bytes) -> str:
-    """That of a trace."""
+    """Return the hash of a trace's content."""
     return hashlib.sha256(content).hexdigest()
 
 
 def write_trace(folder: Path, content: bytes) -> None:
-    """Raises FileWriteError."""
+    """Write trace.txt to a run folder."""
     write_atomically(folder / FILE, content)
 
 
 def read_trace(folder: Path) -> List[str]:
-    """Raises SettingsError if the run has left none."""
+    """Read trace.txt of a run folder.
+
+    Raises:
+        SettingsError: If there is none.
+    """
     try:
         return (folder / FILE).read_text(encoding="utf-8").splitlines()
     except OSError as error:
@@ -138,7 +154,7 @@ def read_trace(folder: Path) -> List[str]:
 
 
 def first_difference(here: Sequence[str], there: Sequence[str]) -> Optional[TraceDifference]:
-    """The earliest entry that one has and the other has not; None if they are the same."""
+    """Return the first difference of two traces; None if they are equal."""
     pairs: List[Tuple[Optional[str], Optional[str]]] = list(zip(here, there))
     longer = max(len(here), len(there))
     pairs += [

@@ -1,4 +1,4 @@
-"""Was the mission really done? Judged by ground truth, not by what the robot believes."""
+"""Verdict of a mission, by ground truth and not by the robot's estimate."""
 
 from dataclasses import dataclass, field
 from typing import Any, Dict, List, Optional, Sequence, Set
@@ -11,7 +11,19 @@ FINAL_STATES = ("delivered", "failed", "cancelled")
 
 @dataclass
 class DeliveryRecord:
-    """What was seen of a delivery. Errors: how far from a pose of the place the robot truly stood, metres."""
+    """Observations of a delivery.
+
+    Attributes:
+        name: Name of the delivery.
+        object: Object to carry.
+        source: Place where it is picked up.
+        destination: Place where it is set down.
+        state: Last published state.
+        attempts: Goals sent for it.
+        reason: Why it failed.
+        pickup_error: True distance from the nearest pose of the source on arrival [m].
+        dropoff_error: The same at the destination [m].
+    """
 
     name: str
     object: str
@@ -24,7 +36,7 @@ class DeliveryRecord:
     dropoff_error: Optional[float] = None
 
     def result_fields(self) -> Dict[str, Any]:
-        """As it stands in result.json; metres."""
+        """Return the record as written to result.json."""
         return {
             "name": self.name,
             "object": self.object,
@@ -39,26 +51,35 @@ class DeliveryRecord:
 
     @property
     def failure(self) -> Optional[str]:
-        """Why this delivery is not proven; None if it is."""
+        """Why the delivery is not proven; None if it is."""
         if self.state != "delivered":
             return f"{self.name} is {self.state}" + (f": {self.reason}" if self.reason else "")
         for place, error in ((self.source, self.pickup_error), (self.destination, self.dropoff_error)):
             if error is None:
-                return f"the robot never said that it arrived at {place}"
+                return f"the robot never reported its arrival at {place}"
             if error > ARRIVAL_TOLERANCE:
                 return f"at {place} the robot truly stood {error:.2f} m off, more than {ARRIVAL_TOLERANCE} m"
         return None
 
     @property
     def expected_markers(self) -> List[str]:
-        """What its object's marker must have shown, in this order."""
+        """Changes that the object's marker must have shown, in order."""
         places = (self.source, self.destination)
         return [f"{self.object} at {places[0]}", f"{self.object} carried", f"{self.object} at {places[1]}"]
 
 
 @dataclass
 class MissionRecord:
-    """What was seen of a run. ``reason``: the robot's own words for how its mission ended."""
+    """Observations of a run.
+
+    Attributes:
+        deliveries: Records of all deliveries.
+        collisions: Names of what the robot touched.
+        markers: Changes of the markers, in words.
+        final_state: Last state of the mission.
+        reason: How the mission ended, as published by the robot.
+        failure: Why the run was cut short.
+    """
 
     deliveries: List[DeliveryRecord] = field(default_factory=list)
     collisions: List[str] = field(default_factory=list)
@@ -69,14 +90,14 @@ class MissionRecord:
 
     @property
     def position_errors(self) -> Dict[str, float]:
-        """The error at each place that the robot came to."""
+        """Position error at each place that the robot arrived at [m]."""
         errors = {}
         for record in self.deliveries:
             errors[record.source], errors[record.destination] = record.pickup_error, record.dropoff_error
         return {place: error for place, error in errors.items() if error is not None}
 
     def result_fields(self) -> Dict[str, Any]:
-        """What belongs into result.json; metres."""
+        """Return fields of result.json."""
         return {
             "position_error": {place: round(error, 4) for place, error in self.position_errors.items()},
             "deliveries": [record.result_fields() for record in self.deliveries],
@@ -86,7 +107,7 @@ class MissionRecord:
         }
 
     def is_complete(self, expected: Set[str]) -> bool:
-        """Whether everything expected has been seen, or can no longer come."""
+        """Whether everything expected has been observed, or can no longer occur."""
         if self.failure or self.final_state in ("failed", "cancelled"):
             return True
         if ERRAND in expected and self.final_state not in FINAL_STATES:
@@ -97,13 +118,13 @@ class MissionRecord:
 
     @property
     def objects_without_markers(self) -> List[str]:
-        """The delivered objects whose markers have not told the whole story."""
-        untold = []
+        """Delivered objects whose markers have not shown all expected changes."""
+        incomplete = []
         for record in self.deliveries:
-            told = iter(self.markers)
-            if record.state == "delivered" and not all(event in told for event in record.expected_markers):
-                untold.append(record.object)
-        return untold
+            shown = iter(self.markers)
+            if record.state == "delivered" and not all(event in shown for event in record.expected_markers):
+                incomplete.append(record.object)
+        return incomplete
 
 
 @dataclass(frozen=True)
@@ -115,7 +136,15 @@ class Verdict:
 
 
 def judge(record: MissionRecord, expected: Set[str]) -> Verdict:
-    """Success only if all that was expected was truly seen and nothing was hit."""
+    """Judge a run.
+
+    Args:
+        record: Observations of the run.
+        expected: What must have been observed: ERRAND, MARKERS, OBJECTS, DEMO.
+
+    Returns:
+        Success only if everything expected was observed and nothing was touched.
+    """
     failure = record.failure or None
     if failure is None and ERRAND in expected:
         failure = _errand_failure(record)
@@ -130,7 +159,7 @@ def judge(record: MissionRecord, expected: Set[str]) -> Verdict:
 
 
 def collision(touched: Sequence[str]) -> Optional[str]:
-    """What was collided with, in words; None if nothing was touched."""
+    """Return what the robot collided with, in words; None if nothing."""
     return f"collided with {', '.join(sorted(set(touched)))}" if touched else None
 
 

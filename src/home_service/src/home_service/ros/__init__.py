@@ -1,1 +1,1 @@
-"""What speaks ROS: runs and those who watch them, the commander, the player of bags."""
+"""ROS interface of home_service."""

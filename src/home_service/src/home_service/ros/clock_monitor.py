@@ -1,4 +1,4 @@
-"""Notices that simulated time stands still, and says why."""
+"""Detect that simulated time has stopped, and report why."""
 
 import threading
 import time
@@ -13,12 +13,16 @@ from planar_ros.calls.services import ServiceError, call_service
 from planar_ros.node.waiting import TOPIC as WAITING_TOPIC
 
 SIMULATOR = "/sim_bridge"
-# Wall seconds after which it is worth a word, and that the simulator has to answer.
+# Wall-clock time after which a stopped clock is reported, and time-out of the simulator's answer [s].
 STANDING_SECONDS, ANSWER_SECONDS = 3.0, 3.0
 
 
 class ClockMonitor:
     """Detects that ``/clock`` has stopped and asks the simulator why.
+
+    Args:
+        log: Called with the reason when the clock has stopped.
+        patience: Wall-clock time without progress after which the clock counts as stopped [s].
 
     Attributes:
         reason: Why simulated time stands still, in words; None while it advances.
@@ -33,23 +37,23 @@ class ClockMonitor:
         self._waiting_for: List[str] = []
 
     def start(self) -> None:
-        """This process is a node by then."""
+        """Subscribe; this process is a node by then."""
         rospy.Subscriber("/clock", Clock, lambda message: self.on_clock(message.clock.to_sec()), queue_size=1)
         rospy.Subscriber(
             f"{SIMULATOR}/{WAITING_TOPIC}", String, lambda message: self.on_waiting(message.data)
         )
 
     def on_waiting(self, names: str) -> None:
-        """What the simulator waits for, one a line."""
+        """Store the nodes that the simulator waits for, one a line."""
         self._waiting_for = names.splitlines()
 
     def on_clock(self, stamp: float) -> None:
-        """What time it is, seconds."""
+        """Store the current time [s]."""
         if stamp != self._stamp:
             self._stamp, self._since, self.reason = stamp, time.monotonic(), None
 
     def check(self) -> None:
-        """Whether it has stood still for too long."""
+        """Check the clock; to be called periodically."""
         stands = self._stamp is not None and time.monotonic() - self._since > self._patience
         if stands and self.reason is None and not self._is_querying:
             self._is_querying = True
@@ -64,7 +68,7 @@ class ClockMonitor:
 
 
 def why_clock_stopped(waiting_for: Sequence[str]) -> str:
-    """What the simulator says of it; ``waiting_for``: what it has said before."""
+    """Ask the simulator why time stands still; ``waiting_for``: nodes that it has published to wait for."""
     request, name = GetPhysicsPropertiesRequest(), "/gazebo/get_physics_properties"
     try:
         is_paused = call_service(name, GetPhysicsProperties, request, ANSWER_SECONDS).pause

@@ -1,4 +1,4 @@
-"""Watches one robot follow another, by ground truth."""
+"""Judge by ground truth whether one robot follows another."""
 
 import threading
 from collections import OrderedDict
@@ -19,18 +19,24 @@ from planar.maps.places import NamedPlace
 from planar_ros.messages.conversion import pose2_from_msg
 from supervision.display import Display
 
-# A follower is with its leader within this distance, metres, and must be for this share of the time.
+# Distance within which a follower is close to its leader [m], and share of the time in which it must be.
 MAX_DISTANCE, REQUIRED_SHARE = 1.5, 0.9
-# The time begins when the leader has gone so far, metres.
+# Distance from its start at which the leader has departed [m].
 DEPARTURE_DISTANCE = 0.05
-# So many messages the truth about one robot may come before that about the other.
+# Messages by which the true poses of one robot may be ahead of the other's.
 MAX_UNPAIRED = 500
 
 
 class FollowMonitor:
-    """How far the robot below ``namespace`` truly is from the one without, at each moment told of both.
+    """Distance of a follower from its leader, from the leader's departure on.
 
-    From when the leader sets off.
+    Only stamps with the true poses of both robots count.
+
+    Args:
+        namespace: Namespace of the follower; the leader has none.
+
+    Attributes:
+        collisions: What the follower touched.
     """
 
     def __init__(self, namespace: str):
@@ -46,22 +52,23 @@ class FollowMonitor:
 
     @property
     def share(self) -> float:
-        """Of the time, in which the follower was with its leader."""
+        """Share of the time in which the follower was close to its leader."""
         return self._near / max(self._seen, 1)
 
     @property
     def failure(self) -> Optional[str]:
-        """Why this was no following; None if it was."""
+        """Why the follower has failed; None if it has not."""
         if self.collisions:
             return f"the follower collided with {', '.join(sorted(set(self.collisions)))}"
         return None if self.share >= REQUIRED_SHARE else f"{self.description} only"
 
     @property
     def description(self) -> str:
+        """How well it followed, in words."""
         return f"the follower was within {MAX_DISTANCE} m for {100.0 * self.share:.0f} % of the time"
 
     def result_fields(self) -> Dict[str, Any]:
-        """What belongs into result.json; metres."""
+        """Return fields of result.json."""
         return {
             "follower_share_near": round(self.share, 4),
             "follower_farthest": round(self._farthest, 3),
@@ -94,7 +101,7 @@ class FollowMonitor:
 
 
 def run_follow(options: RunOptions, launch: LaunchPlan, places: Mapping[str, NamedPlace]) -> int:
-    """Runs an errand that another robot follows; returns the exit code."""
+    """Run an errand that another robot follows; return the exit code."""
     display = Display()
     referee = Referee(places, display.print)
     with Run(options, launch, referee, RunRecorder(places), display) as run:

@@ -1,4 +1,4 @@
-"""Listens to the goals that move_base is given by hand, and to how they end."""
+"""Subscriber of the goals that are sent to move_base by hand, and of their outcomes."""
 
 from typing import Any, Callable, Dict, Optional
 
@@ -12,7 +12,12 @@ from planar_ros.messages.conversion import pose2_from_msg
 
 
 class GoalMonitor:
-    """``log``: is called with each line; ``truth``: tells where the robot truly is, in the map."""
+    """Logs goals and outcomes.
+
+    Args:
+        log: Called with each line.
+        truth: Returns the true pose of the robot in the map.
+    """
 
     def __init__(self, log: Callable[[str], None], truth: Callable[[], Optional[Pose2]]):
         self._log, self._truth = log, truth

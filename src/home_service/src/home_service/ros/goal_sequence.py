@@ -1,4 +1,4 @@
-"""Goals of move_base, driven to one after the other and judged by where the robot truly stood."""
+"""Drive to goals of move_base one after the other, judged by ground truth."""
 
 from typing import List, Optional, Sequence
 
@@ -17,7 +17,7 @@ from supervision.display import Display
 
 
 def drive_to_goals(options: RunOptions, launch: LaunchPlan, goals: Sequence[Pose2]) -> int:
-    """Runs a graph that navigates, and drives to the goals, in the map's frame; returns the exit code."""
+    """Run a navigation graph and drive to goals in the map frame; return the exit code."""
     display = Display()
     referee = Referee({}, display.print)
     with Run(options, launch, referee, RunRecorder({}), display) as run:
@@ -27,8 +27,8 @@ def drive_to_goals(options: RunOptions, launch: LaunchPlan, goals: Sequence[Pose
 
 
 def _drive_to_all(run: Run, referee: Referee, goals: Sequence[Pose2]) -> Optional[str]:
-    """Why it could not come to the last goal, or None."""
-    # Heard before the client hears it: when a goal has ended, the last of these is when it did.
+    """Return why the last goal was not reached, or None."""
+    # Received before the client receives it: the last entry is the time at which the latest goal ended.
     ends: List[float] = [0.0]
     rospy.Subscriber(
         "move_base/result", MoveBaseActionResult, lambda result: ends.append(result.header.stamp.to_sec())
@@ -60,7 +60,7 @@ def _drive_to(run: Run, referee: Referee, move_base: MoveBaseClient, pose: Pose2
 
 
 def _judged(run: Run, referee: Referee, pose: Pose2, name: str) -> Optional[str]:
-    """Where the robot truly is now that it has arrived."""
+    """Return how far the robot truly is from a goal that it has reached, if too far."""
     error = referee.distance_from(pose)
     run.display.print(f"{name}: reached, truly {error:.3f} m from it")
     return f"{name}: the robot truly stood {error:.2f} m off" if error > ARRIVAL_TOLERANCE else None

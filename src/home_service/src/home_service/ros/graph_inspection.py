@@ -1,4 +1,4 @@
-"""What is running, found by asking the master and the nodes and by listening for a while."""
+"""Snapshot of a running graph: master and nodes are queried, topics are measured for a while."""
 
 import os
 import time
@@ -23,7 +23,12 @@ SILENT_WHILE_IDLE = ("/cmd_vel",)
 
 
 def inspect_graph(master: Optional[str], seconds: float) -> GraphSnapshot:
-    """What there is to say of the graph of ``master``, or of the newest one, listened to for ``seconds``."""
+    """Take a snapshot of a graph.
+
+    Args:
+        master: URI of its master; None: the newest one on this machine.
+        seconds: Time for which topics are measured [s].
+    """
     snapshot = GraphSnapshot(versions=versions())
     masters = [master] if master else running_masters()
     if masters:
@@ -33,7 +38,7 @@ def inspect_graph(master: Optional[str], seconds: float) -> GraphSnapshot:
 
 
 def running_masters() -> List[str]:
-    """The masters that answer: the one of ROS_MASTER_URI first, then those of this machine, newest first."""
+    """Return URIs of responding masters: ROS_MASTER_URI first, then those of this machine, newest first."""
     found = [os.environ.get("ROS_MASTER_URI", "")]
     for process in sorted(
         psutil.process_iter(["cmdline", "create_time"]), key=lambda p: -p.info["create_time"]
@@ -66,7 +71,7 @@ def _inspect(snapshot: GraphSnapshot, uri: str, seconds: float) -> None:
 
 
 def _address(master: rosgraph.Master, node: str) -> Optional[str]:
-    """None if the node has gone since it was named."""
+    """Return the URI of a node; None if it has exited."""
     try:
         return master.lookupNode(node)
     except rosgraph.MasterError:
@@ -74,7 +79,7 @@ def _address(master: rosgraph.Master, node: str) -> Optional[str]:
 
 
 class TopicMonitor:
-    """Completes findings with rates, time, frames and waiting, by listening for a while."""
+    """Adds rates, time, frames and what nodes wait for to a snapshot."""
 
     def __init__(self, snapshot: GraphSnapshot):
         self._findings = snapshot
@@ -83,6 +88,7 @@ class TopicMonitor:
         self._handlers = {"/clock": (Clock, self._on_clock), "/tf": (TFMessage, self._on_frames)}
 
     def measure(self, seconds: float) -> None:
+        """Subscribe and measure for so many seconds."""
         snapshot = self._findings
         measured = [topic for topic in snapshot.topics if topic.name in MEASURED_TOPICS]
         for topic in measured:

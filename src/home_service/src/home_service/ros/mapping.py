@@ -1,4 +1,4 @@
-"""Maps made by hand, or by a robot that explores the world."""
+"""Mapping runs: driven by hand, or by the explorer."""
 
 import os
 import subprocess
@@ -25,16 +25,16 @@ from supervision.errors import LaunchError
 from supervision.interruption import RunInterruptedError
 from supervision.processes import ending_with_parent
 
-# For the map to come, and for all of it: on a machine that is busy a program takes long to start.
+# Time-outs for the map and for the whole program, which starts slowly on a busy machine [s].
 MAP_SECONDS, SAVE_SECONDS = 30.0, 90.0
 POLL_SECONDS = 0.05
-# Has the robot driven until the map is made; why that failed, or None.
-Driver = Callable[[Run, Referee], Optional[str]]
+# Drives the robot until the map is complete; returns why that failed, or None.
+DriveFunction = Callable[[Run, Referee], Optional[str]]
 TELEOP = ["rosrun", "teleop_lite", "turtlebot_teleop_key", "turtlebot_teleop_keyboard/cmd_vel:=cmd_vel"]
 
 
-def make_map(options: MappingOptions, launch: LaunchPlan, drive: Driver) -> int:
-    """Runs SLAM while ``drive`` does, and saves the map; returns the exit code."""
+def make_map(options: MappingOptions, launch: LaunchPlan, drive: DriveFunction) -> int:
+    """Run SLAM while ``drive`` drives the robot, and save the map; return the exit code."""
     _check_place_to_save(options.save)
     display = Display()
     referee = Referee({}, display.print)
@@ -45,7 +45,7 @@ def make_map(options: MappingOptions, launch: LaunchPlan, drive: Driver) -> int:
 
 
 def make_scored_map(options: MappingOptions, launch: LaunchPlan, stage: WorldInputs) -> int:
-    """Runs SLAM and the explorer, saves the map, and judges it by the world; returns the exit code."""
+    """Run SLAM and the explorer, save the map and score it against the world; return the exit code."""
     _check_place_to_save(options.save)
     display = Display()
     referee = Referee({}, display.print)
@@ -60,11 +60,12 @@ def make_scored_map(options: MappingOptions, launch: LaunchPlan, stage: WorldInp
 
 
 def explore(run: Run, referee: Referee) -> Optional[str]:
-    """A driver: the robot explores by itself and returns."""
+    """Drive function: the explorer maps everything and returns to the start."""
 
     def show(message: ExploreActionFeedback) -> None:
-        told = message.feedback
-        referee.state = f"{told.state}, {told.explored_area:.0f} m2 known, {told.frontiers} frontiers"
+        feedback = message.feedback
+        area, frontiers = feedback.explored_area, feedback.frontiers
+        referee.state = f"{feedback.state}, {area:.0f} m2 known, {frontiers} frontiers"
 
     ends: List[GoalStatus] = []
     subscribe("explore/feedback", ExploreActionFeedback, show)
@@ -77,19 +78,21 @@ def explore(run: Run, referee: Referee) -> Optional[str]:
 
 
 def drive_by_keyboard(run: Run, _referee: Referee) -> Optional[str]:
-    """A driver: terminal or pipe are left to the keyboard teleop until it ends."""
+    """Drive function: the keyboard teleop owns the terminal or the pipe until it exits."""
     run.display.release_terminal()
     teleop = subprocess.Popen(TELEOP, preexec_fn=ending_with_parent())
     failure = run.watch(lambda: teleop.poll() is not None)
     if failure is None and teleop.returncode != 0:
-        raise LaunchError("the keyboard teleop has failed", is_bad_input=teleop.returncode == 2)
+        raise LaunchError(
+            f"turtlebot_teleop_key exited with code {teleop.returncode}", is_bad_input=teleop.returncode == 2
+        )
     return failure
 
 
 def drive_in_browser(run: Run, _referee: Referee) -> Optional[str]:
-    """A driver: a person drives in the browser until Ctrl-C."""
+    """Drive function: a person drives in the cockpit until Ctrl-C."""
     run.display.print(f"ROS_MASTER_URI={os.environ['ROS_MASTER_URI']}")
-    run.display.print("drive at the page; Ctrl-C ends, and saves the map")
+    run.display.print("drive in the cockpit; Ctrl-C ends the run and saves the map")
     with suppress(RunInterruptedError):
         return run.watch(lambda: False)
     return None
@@ -101,9 +104,18 @@ def _check_place_to_save(stem: Optional[Path]) -> None:
 
 
 def save_map(run: Run, stem: Optional[Path], failure: Optional[str] = None) -> Path:
-    """Saves the map that is published, into the run folder if no ``stem`` is given; returns its YAML.
+    """Save the published map.
 
-    Raises LaunchError, which first tells the ``failure`` that the run has come to before.
+    Args:
+        run: The run.
+        stem: Path without suffix; None: into the run folder.
+        failure: Why the run has failed before, to be reported first.
+
+    Returns:
+        Path of the YAML file.
+
+    Raises:
+        LaunchError: If the map cannot be saved.
     """
     stem = (stem or run.folder / "map").resolve()
     gap = _save(run, stem)
@@ -113,7 +125,7 @@ def save_map(run: Run, stem: Optional[Path], failure: Optional[str] = None) -> P
 
 
 def _save(run: Run, stem: Path) -> Optional[str]:
-    """Why there is no map, or None. Without a master the saver would wait for ever."""
+    """Return why the map was not saved, or None; map_saver alone would wait for a master for ever."""
     saver = subprocess.Popen(
         ["rosrun", "map_lite", "map_saver", "-f", str(stem), "--timeout", str(MAP_SECONDS)],
         stdin=subprocess.DEVNULL,
@@ -133,10 +145,10 @@ def _save(run: Run, stem: Path) -> Optional[str]:
     finally:
         is_late = saver.poll() is None
         saver.kill()
-        said = saver.communicate()[0].split("\n")
+        output = saver.communicate()[0].split("\n")
     if saver.returncode == 0:
         return None
-    last = next((line.strip() for line in reversed(said) if line.strip()), "")
-    words = f"; its last words: {last}" if last else ""
-    failure = f"not over after {SAVE_SECONDS:g} s{words}" if is_late else last or "failed"
+    last = next((line.strip() for line in reversed(output) if line.strip()), "")
+    tail = f"; last line of its log: {last}" if last else ""
+    failure = f"did not exit within {SAVE_SECONDS:g} s{tail}" if is_late else last or "failed"
     return end_of_graph or f"map_saver: {failure}"

@@ -1,4 +1,4 @@
-"""Watches a run from outside the robot: ground truth, contacts, the state of the errand, the marker."""
+"""Observes a run from outside the robot: ground truth, contacts, mission state, markers."""
 
 import contextlib
 import math
@@ -29,7 +29,7 @@ from supervision.processes import start_of_this_process
 MOTION_DISTANCE = 0.02
 NUMBER = re.compile(r"\d[\d.]*")
 CONNECTION_LOG_FILE = "tcpros_base.py"
-# Ground truth is remembered for so many messages, to look up where the robot stood at a stamp.
+# Ground-truth messages that are kept to look up the pose at a stamp.
 TRUTH_HISTORY = 500
 LOGGED_NODES = ("/pick_objects", "/add_markers")
 # Of simulated and of wall time, after the end of a mission: what has not been reported by then does not come.
@@ -37,16 +37,27 @@ GRACE_SECONDS = 10.0
 
 
 class Referee:
-    """A judge that fills a ledger from topics. Simulated time is that of the ground truth's stamps.
+    """Fills a mission record from topics. Simulated time is that of the ground truth's stamps.
 
-    ``log`` is called with each line worth a person's attention. Places that only a mission knows which the
-    robot is sent are learned from it.
+    Args:
+        places: Places by name; places of a mission that is sent to the robot are added.
+        log: Called with each line for people.
+        logs_goals: Log goals of move_base and their outcomes, too.
+
+    Attributes:
+        mission_record: Observations of the run.
+        state: Current state of the mission.
+        distance_driven: True distance driven [m].
+        remaining_distance: Length of the latest plan [m]; None without a goal.
+        first_motion_wall: Wall-clock time of the first motion [s].
+        start_wall: Monotonic time of the first ground truth [s].
+        truth: Latest true pose.
+        simulated_time: Its stamp [s].
     """
 
     def __init__(
         self, places: Mapping[str, NamedPlace], log: Callable[[str], None], logs_goals: bool = False
     ):
-        """``logs_goals``: also of the goals that move_base is given."""
         self.mission_record = MissionRecord()
         self.state = ""
         self.distance_driven = 0.0
@@ -71,7 +82,7 @@ class Referee:
         self._goals = GoalMonitor(log, lambda: self.truth) if logs_goals else None
 
     def start(self) -> None:
-        """Subscribes to what it judges by; this process is a node by then."""
+        """Subscribe; this process is a node by then."""
         self._is_started = True
         truth = "base_pose_ground_truth"
         subscribe(truth, Odometry, self._on_truth)
@@ -87,30 +98,30 @@ class Referee:
             self._goals.start()
 
     def has_truth(self) -> bool:
-        """Whether the truth about the robot has been seen."""
+        """Whether the true pose of the robot has been received."""
         return self.truth is not None
 
     def has_seen(self, expected: Set[str]) -> bool:
-        """Whether everything expected has been seen, or can no longer come."""
+        """Whether everything expected has been observed, or can no longer occur."""
         return self.mission_record.is_complete(expected) or self._is_past_grace_period()
 
     def verdict(self, expected: Set[str], failure: Optional[str] = None) -> Verdict:
-        """Whether all that was expected truly came about; ``failure``: why the run was cut short, if so."""
+        """Return the verdict; ``failure``: why the run was cut short, if so."""
         self.mission_record.failure = failure or self.mission_record.failure
         return judge(self.mission_record, expected)
 
     def distance_from(self, pose: Pose2) -> float:
-        """How far the robot truly is from a pose of the world, metres; it has begun by then."""
+        """Return the true distance of the robot from a pose in the world [m]; requires ground truth."""
         assert self.truth is not None
         return self.truth.distance_to(pose)
 
     @property
     def collision(self) -> Optional[str]:
-        """What the robot has collided with, in words; None if with nothing."""
+        """What the robot has collided with, in words; None if nothing."""
         return collision(self.mission_record.collisions)
 
     def status(self) -> str:
-        """How things stand, in a line."""
+        """Return the current state in one line."""
         to_go = "" if self.remaining_distance is None else f"{self.remaining_distance:.1f} m to go, "
         return (
             f"{self.state or 'running'}: {to_go}simulated {self.simulated_seconds:.1f} s, "
@@ -118,7 +129,7 @@ class Referee:
         )
 
     def result_fields(self) -> Dict[str, Any]:
-        """What belongs into result.json; nothing if it was not started."""
+        """Return fields of result.json; none if it was not started."""
         if not self._is_started:
             return {}
         first_motion = self.first_motion_wall
@@ -133,12 +144,12 @@ class Referee:
 
     @property
     def simulated_seconds(self) -> float:
-        """How long the simulation has run since it was first seen."""
+        """Simulated time since the first ground truth [s]."""
         return self.simulated_time - self._start_time
 
     @property
     def real_time_factor(self) -> float:
-        """Simulated seconds per wall-clock second since the simulation was first seen."""
+        """Simulated seconds per wall-clock second since the first ground truth."""
         if self.truth is None:
             return 0.0
         return self.simulated_seconds / max(time.monotonic() - self.start_wall, 1e-3)
@@ -162,7 +173,7 @@ class Referee:
             self.state = message.data
 
     def _on_goal(self, message):
-        """What cannot be understood is refused by the robot, in words."""
+        """Add the places of a mission; the robot reports a mission that is not valid."""
         with self._lock, contextlib.suppress(PlanarError):
             if message.goal.mission:
                 self._places.update(parse_mission(message.goal.mission, self._places).places)
@@ -173,7 +184,7 @@ class Referee:
             self._process_missions()
 
     def _process_missions(self):
-        """Judges what has been reported of missions, each once the truth of its moment has come."""
+        """Process mission states whose stamp the ground truth has reached."""
         while (
             self._pending_missions and self._pending_missions[0].header.stamp.to_sec() <= self.simulated_time
         ):
@@ -195,7 +206,7 @@ class Referee:
     def _is_past_grace_period(self) -> bool:
         now = (self.simulated_time, time.monotonic())
         return self._ended_at is not None and all(
-            moment > since + GRACE_SECONDS for moment, since in zip(now, self._ended_at)
+            time > end + GRACE_SECONDS for time, end in zip(now, self._ended_at)
         )
 
     def _truth_at(self, stamp: float) -> Optional[Pose2]:
@@ -219,7 +230,7 @@ class Referee:
         self.remaining_distance = sum(math.dist(a, b) for a, b in zip(points, points[1:]))
 
     def _on_result(self, _message):
-        """A goal is over: there is nothing left to go."""
+        """A goal has ended: no distance remains."""
         self.remaining_distance = None
 
     def _on_log(self, message):
@@ -233,7 +244,7 @@ class Referee:
             self._log(f"{node}: {message.msg}")
 
     def _is_new_warning(self, gist):
-        """Whether this was not reported before, be it with other numbers; the report counts them all."""
+        """Whether a warning was not logged before, numbers aside; the report lists all of them."""
         is_new = gist not in self._logged
         self._logged.add(gist)
         return is_new

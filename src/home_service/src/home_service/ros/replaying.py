@@ -1,4 +1,4 @@
-"""A recording, played to localization or mapping, and what they make of it."""
+"""Playback of a recording to localization or mapping."""
 
 from pathlib import Path
 from typing import Optional, Sequence
@@ -20,8 +20,16 @@ from supervision.interruption import raise_when_interrupted
 
 
 def open_recording(paths: Sequence[Path], needs_scans: bool) -> Recording:
-    """The bags that are named. Raises BagError, also if there are no scans where scans are needed."""
-    raise_when_interrupted()  # what is broken is mended in a copy, which must not stay
+    """Open bags.
+
+    Args:
+        paths: Bags, or folders of them or of runs.
+        needs_scans: Laser scans are required.
+
+    Raises:
+        BagError: If a bag cannot be read, or scans are missing.
+    """
+    raise_when_interrupted()  # a broken bag is repaired in a temporary copy, which must be deleted
     recording = Recording(paths)
     if needs_scans and not recording.topics_of(LASER_SCAN):
         there = ", ".join(sorted(recording.types)) or "none"
@@ -32,7 +40,18 @@ def open_recording(paths: Sequence[Path], needs_scans: bool) -> Recording:
 def replay(
     options: RunOptions, launch: LaunchPlan, recording: Recording, saves_map: bool, stem: Optional[Path]
 ) -> int:
-    """Runs the graph that plays it to its end; the map goes to ``stem`` or the run folder. The exit code."""
+    """Run the graph that plays a recording to its end.
+
+    Args:
+        options: Options of the command.
+        launch: What to launch.
+        recording: The recording.
+        saves_map: Save the map at the end.
+        stem: Where to save it; None: into the run folder.
+
+    Returns:
+        Exit code.
+    """
     display = Display()
     with Run(options, launch, Referee({}, display.print), RunRecorder({}), display) as run:
         run.result.missing += recording.gaps
@@ -44,8 +63,8 @@ def replay(
 
 
 def _play(run: Run) -> Optional[str]:
-    """Waits for the end of the recording; why it did not come, or None."""
-    told = [""]
-    rospy.Subscriber("bag_player/state", String, lambda message: told.append(message.data), queue_size=10)
-    failure = run.watch(lambda: told[-1].startswith((ENDED, BROKEN)))
-    return failure or (told[-1] if told[-1].startswith(BROKEN) else None)
+    """Wait for the end of the recording; return why it was not reached, or None."""
+    states = [""]
+    rospy.Subscriber("bag_player/state", String, lambda message: states.append(message.data), queue_size=10)
+    failure = run.watch(lambda: states[-1].startswith((ENDED, BROKEN)))
+    return failure or (states[-1] if states[-1].startswith(BROKEN) else None)

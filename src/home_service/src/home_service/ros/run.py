@@ -1,4 +1,4 @@
-"""One run: a graph brought up, watched, ended, and written down."""
+"""A run: launch a graph, watch it, end it, and write its results."""
 
 import os
 import threading
@@ -32,24 +32,35 @@ from supervision.run_folder import create_run_folder
 from supervision.streams import ignore_write_errors
 from supervision.versions import versions
 
-# The name of a run's own process as a node. The simulator is told of it before it is one, to wait for it.
+# Node name of the run's process. The simulator knows it from the start and waits for it.
 NODE = "referee"
 REPORT_SECONDS = 60.0
-# How long what is shown is left open after the verdict.
+# Time that views are left open after the verdict [s].
 VIEW_SECONDS = 8.0
 NO_DISPLAY = "--rviz: there is no display (DISPLAY is not set); --web shows the run in the browser"
 
 
 class Run:
-    """Context of a run: entering brings the graph up, leaving takes it down, whatever happened.
+    """Context of a run: entering launches the graph, leaving ends it in any case.
 
-    ``judge`` and ``recorder`` are started as soon as there is a graph to watch.
+    Args:
+        options: Options of the command.
+        launch: What to launch.
+        judge: Started as soon as there is a graph.
+        recorder: Started as soon as there is a graph.
+        display: Terminal output.
+
+    Attributes:
+        folder: Run folder.
+        result: result.json.
+
+    Raises:
+        SettingsError: If the run folder cannot be made or a requirement is not met.
     """
 
     def __init__(
         self, options: RunOptions, launch: LaunchPlan, judge: Judge, recorder: Recorder, display: Display
     ):
-        """Makes the run folder. Raises SettingsError."""
         if options.rviz and not os.environ.get("DISPLAY"):
             raise SettingsError(NO_DISPLAY)
         check_open_files()
@@ -77,8 +88,12 @@ class Run:
         return self
 
     def __exit__(self, _kind, error, _traceback) -> None:
-        """Raises ResultError if a run that has succeeded leaves no result."""
-        # The report is made while the nodes end, so that it costs no time.
+        """End the graph and write the report.
+
+        Raises:
+            ResultError: If a successful run could not write its result.
+        """
+        # The report is written while the nodes end, so that it costs no time.
         reporting = threading.Thread(target=self._write_report, daemon=True)
         try:
             self._finish(error)
@@ -87,7 +102,7 @@ class Run:
             self._supervisor.end()
         reporting.join(REPORT_SECONDS)
         if reporting.is_alive():
-            self.result.missing.append(f"the report: not made within {REPORT_SECONDS:g} s")
+            self.result.missing.append(f"report: not written within {REPORT_SECONDS:g} s")
         lacks_result = error is None and self._has_succeeded and self.result.gap is not None
         gaps = self.result.missing if lacks_result else self.result.all_missing
         for gap in grouped_by_reason(gaps):
@@ -98,9 +113,14 @@ class Run:
             raise ResultError(f"{self.folder}/{self.result.gap}: without it the run is no success")
 
     def watch(self, is_over: Callable[[], bool]) -> Optional[str]:
-        """Shows progress until ``is_over``; returns why the run cannot go on, or None if it got there.
+        """Show progress until ``is_over``.
 
-        Raises LaunchError if a node refused its input, RunInterruptedError at Ctrl-C.
+        Returns:
+            Why the run cannot continue, or None once it is over.
+
+        Raises:
+            LaunchError: If a node rejected its input.
+            RunInterruptedError: At Ctrl-C.
         """
         failure = self._supervisor.watch(is_over, self._status)
         standstill = self._clock_monitor.reason
@@ -108,7 +128,7 @@ class Run:
 
     @property
     def end_of_graph(self) -> Optional[str]:
-        """Why nothing runs any more, or None; also after Ctrl-C. Raises LaunchError as ``watch`` does."""
+        """Why the graph has ended, or None; also after Ctrl-C. Raises LaunchError as ``watch`` does."""
         return self._supervisor.end_of_graph
 
     def _status(self) -> str:
@@ -116,7 +136,7 @@ class Run:
         return self._judge.status()
 
     def conclude(self, verdict: Verdict, **findings: Any) -> int:
-        """Keeps the findings for result.json, prints the verdict, and returns the exit code it deserves."""
+        """Write result.json, print the verdict, and return the exit code."""
         self._record_result(verdict, **findings)
         if self.result.gap is not None:
             verdict = Verdict(False, f"{self.result.gap}; what the run came to: {verdict.reason}")
@@ -150,7 +170,7 @@ class Run:
             wait_for("the recorder of bags", self._bags.is_ready)
 
     def _subscribe(self) -> None:
-        """Makes this process a node that hears all it is to judge and to keep."""
+        """Make this process a node and start all observers."""
         init_node(NODE, log_level=rospy.ERROR)
         self._trace.start()
         if self._launch.is_simulated:
@@ -160,7 +180,7 @@ class Run:
         rospy.set_param(OBSERVERS_PARAMETER, [rospy.get_name()])
 
     def _finish(self, error: Optional[BaseException]) -> None:
-        """All that is to be done before the nodes end."""
+        """Do what must be done before the nodes end."""
         if error is None and self._options.has_view:
             self._keep_view_open()
         self.display.show("shutting down")
@@ -170,11 +190,11 @@ class Run:
             self._record_result(Verdict(False, str(error)))
         if self._bags is not None:
             self.result.missing += self._bags.close()
-        if not self._supervisor.has_pending_work:  # else rospy would wait for its locks
+        if not self._supervisor.has_pending_work:  # otherwise rospy would wait for its locks
             rospy.signal_shutdown("the run is over")
 
     def _keep_view_open(self) -> None:
-        """Leaves the views open for those who have looked on; Ctrl-C ends it."""
+        """Leave the views open for a while; Ctrl-C closes them."""
         ending = time.monotonic() + VIEW_SECONDS
         with suppress(RunInterruptedError):
             self.display.print(f"the view stays open for {VIEW_SECONDS:g} s; Ctrl-C closes it")

@@ -1,4 +1,4 @@
-"""How runs go: until what is expected has come about, or until a person ends them."""
+"""Ways to run a graph: until everything expected was observed, or until Ctrl-C."""
 
 import math
 import os
@@ -21,7 +21,18 @@ def run_to_completion(
     expected: Set[str],
     seconds: float = math.inf,
 ) -> int:
-    """Runs a graph that does its work by itself, in so many simulated ``seconds``; returns the exit code."""
+    """Run a graph until its work is done.
+
+    Args:
+        options: Options of the command.
+        launch: What to launch.
+        places: Places by name.
+        expected: What must be observed (home_service.judging.verdict).
+        seconds: Simulated time limit [s].
+
+    Returns:
+        Exit code.
+    """
     display = Display()
     referee = Referee(places, display.print)
     with Run(options, launch, referee, RunRecorder(places), display) as run:
@@ -34,9 +45,16 @@ def run_to_completion(
 def run_until_interrupted(
     options: RunOptions, launch: LaunchPlan, hint: str, places: Mapping[str, NamedPlace] = {}
 ) -> int:
-    """Runs a graph for people to work with, who are told where its master is; returns the exit code.
+    """Run a graph for interactive use until Ctrl-C, and print where its master is.
 
-    Once it is open, Ctrl-C is how it is meant to end.
+    Args:
+        options: Options of the command.
+        launch: What to launch.
+        hint: Line that is printed once the graph is up.
+        places: Places by name.
+
+    Returns:
+        Exit code; Ctrl-C is a success once the graph is up.
     """
     display = Display()
     referee = Referee(places, display.print, logs_goals=True)

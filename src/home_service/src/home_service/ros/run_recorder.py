@@ -1,4 +1,4 @@
-"""Keeps what a report needs of a run; does next to nothing while the run goes on."""
+"""Records what the report of a run needs, at little cost."""
 
 import time
 from typing import Dict, Mapping, Optional
@@ -39,10 +39,7 @@ MAP_FRAME, ODOM_FRAME = "map", "odom"
 
 
 class RunRecorder:
-    """Samples truth, estimate and odometry ten times a simulated second, less often in the long run.
-
-    Notes every event, and keeps the latest.
-    """
+    """Samples truth, estimate and odometry ten times a simulated second, and keeps the latest events."""
 
     def __init__(self, places: Mapping[str, NamedPlace]):
         self._places = places
@@ -56,7 +53,7 @@ class RunRecorder:
         self._latest_markings: Dict[str, MarkerEvent] = {}
 
     def start(self) -> None:
-        """Subscribes to what it keeps; this process is a node by then."""
+        """Subscribe; this process is a node by then."""
         self._record.zones = [
             ZoneRecord(place.name, place.pose.x, place.pose.y, place.pose.yaw, place.radius)
             for place in self._places.values()
@@ -72,7 +69,7 @@ class RunRecorder:
         subscribe("/rosout_agg", Log, self._on_log)
 
     def record(self) -> RunRecord:
-        """All that has been seen so far."""
+        """Return everything recorded so far."""
         record = self._record
         truth = self._truth.rows()
         record.truth, record.velocity, record.pace = truth[:, :4], truth[:, [0, 4, 5]], truth[:, [0, 6]]
@@ -142,7 +139,7 @@ class RunRecorder:
         self._append(self._record.goals, GoalEvent(self._now, goal.x, goal.y, goal.yaw))
 
     def _on_plan(self, message):
-        """Keeps the first plan for each goal, of which the others are the rest."""
+        """Keep the first plan for each goal; later ones are its remainder."""
         if self._plans_missing:
             self._plans_missing -= 1
             points = [(pose.pose.position.x, pose.pose.position.y) for pose in message.poses]
@@ -150,7 +147,7 @@ class RunRecorder:
 
     @staticmethod
     def _append(events: list, event: object, most: int = MAX_EVENTS) -> None:
-        """The latest, of a run that serves for days."""
+        """Append an event and drop the oldest of a long run."""
         events.append(event)
         del events[:-most]
 
@@ -167,7 +164,7 @@ def _pose_of(transform) -> Pose2:
 
 
 def _from_start(odometry: np.ndarray, truth: np.ndarray) -> np.ndarray:
-    """Odometry (N, 4) as if the robot had known by it where it truly started."""
+    """Transform odometry (N, 4) so that it starts at the true start pose."""
     if not len(odometry) or not len(truth):
         return odometry
     nearest = odometry[np.argmin(np.abs(odometry[:, 0] - truth[0, 0]))]

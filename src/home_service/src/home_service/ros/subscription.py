@@ -1,4 +1,4 @@
-"""How a run's judges and recorders hear the graph: every message, however much they are held up."""
+"""Subscriptions of the judge and the recorder of a run."""
 
 from typing import Any, Callable
 
@@ -6,9 +6,14 @@ import rospy
 
 
 def subscribe(topic: str, kind: type, callback: Callable[[Any], None]) -> None:
-    """Subscribes, and loses nothing.
+    """Subscribe without losing messages, however long the callback is delayed.
 
-    rospy keeps one queue a topic and process, as long as its latest subscriber wants it: who asks for a short
-    one cuts short what the others hear.
+    rospy keeps one queue for each topic and process, with the length requested last: a short one would also
+    cut the queue of the other subscribers in this process.
+
+    Args:
+        topic: Topic, relative to the namespace.
+        kind: Message class.
+        callback: Called with each message.
     """
     rospy.Subscriber(topic, kind, callback, queue_size=None, tcp_nodelay=True)

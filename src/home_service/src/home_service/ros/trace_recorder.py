@@ -1,4 +1,4 @@
-"""Follows a run for its trace, and for what may keep it from being repeatable."""
+"""Records the trace of a run, and what may keep the run from being repeatable."""
 
 from typing import Any, Callable, List
 
@@ -18,14 +18,14 @@ ROBOTS = ("", "follower/")
 
 
 class TraceRecorder:
-    """Subscribes as soon as there is a master."""
+    """Subscribes to the topics of the trace."""
 
     def __init__(self):
         self._trace = Trace()
         self._remarks: List[str] = []
 
     def start(self) -> None:
-        """This process is a node by then."""
+        """Subscribe; this process is a node by then."""
         for robot in ROBOTS:
             self._record(f"{robot}base_pose_ground_truth", Odometry, _pose)
             self._record(f"{robot}amcl_pose", PoseWithCovarianceStamped, _pose)
@@ -38,7 +38,7 @@ class TraceRecorder:
         subscribe("/simulation/remarks", String, self._on_remarks)
 
     def save(self, result: ResultFile) -> None:
-        """Adds to a result what belongs there, and writes the trace beside it, if anything was driven."""
+        """Add hash and repeatability to a result and write the trace, if anything was driven."""
         with result.recording_gaps(FILE):
             content = self._trace.content()
             if content:

@@ -1,7 +1,7 @@
-"""The node ``bag_player``: plays what was recorded, in step with the nodes that work on it.
+"""Node ``bag_player``: plays sensor data in lock-step with the nodes that process it.
 
-What was estimated during the recording, the transforms below the map, is left out, so that another estimate
-can take its place.
+Transforms below the map, which were estimated during the recording, are left out, so that they can be
+estimated again.
 """
 
 import itertools
@@ -23,17 +23,17 @@ from planar_ros.node.progress import TOPIC as PROGRESS_TOPIC
 from planar_ros.node.shell import run
 from sim_bridge.pacing import Pacer
 
-LISTENER_SECONDS = 30.0
+SUBSCRIBER_TIMEOUT = 30.0
 CLOCK_SECONDS = 0.01
+# Time by which nodes may be behind the bag's time, which is that of reception, not the stamp [s].
 AHEAD_SECONDS = 0.5
-"""The nodes may be so far behind the bag's time, which is when a message came, not the time it speaks of."""
-BEGINNING_SECONDS = 0.3
+FIRST_SCAN_SECONDS = 0.3
 INPUT_TYPES = {LASER_SCAN, "sensor_msgs/PointCloud2", "nav_msgs/Odometry", "tf2_msgs/TFMessage"}
 MAP_FRAME = "map"
 
 
 class BagPlayer:
-    """Publishes a recording's messages and its clock; ``~state`` says when it has ended."""
+    """Publishes the messages and the clock of a recording; ``~state`` reports its end."""
 
     def __init__(self):
         self._recording = Recording(bags_of(rospy.get_param("~bags")))
@@ -44,14 +44,14 @@ class BagPlayer:
         self._clock = rospy.Publisher("/clock", Clock, queue_size=10, tcp_nodelay=True)
         self._clock_stamp = 0.0
         self._is_estimate_missing = bool(wait_for)
-        rospy.Subscriber("/tf", TFMessage, self._see_estimate, queue_size=100)
-        rospy.Subscriber(PROGRESS_TOPIC, Header, self._keep_progress, queue_size=50, tcp_nodelay=True)
+        rospy.Subscriber("/tf", TFMessage, self._on_tf, queue_size=100)
+        rospy.Subscriber(PROGRESS_TOPIC, Header, self._on_progress, queue_size=50, tcp_nodelay=True)
         types = self._recording.types
         self._topics: Set[str] = {topic for topic, kind in types.items() if kind in INPUT_TYPES}
         self._topics -= self._recording.foreign
         if LASER_SCAN not in types.values():
-            there = ", ".join(sorted(types)) or "none"
-            raise BagError(f"{self._recording.paths[0]}: no laser scans; topics: {there}")
+            topics = ", ".join(sorted(types)) or "none"
+            raise BagError(f"{self._recording.paths[0]}: no laser scans; topics: {topics}")
         self._scans = [topic for topic in self._topics if types[topic] == LASER_SCAN]
         self._publishers = {
             topic: rospy.Publisher(
@@ -65,13 +65,13 @@ class BagPlayer:
         }
 
     def work(self) -> None:
-        """Plays everything; then stays, so that what was latched stays."""
+        """Play everything; latched topics stay published afterwards."""
         self._state.publish(PLAYING)
-        self._tell_static()
-        self._wait_for_listeners()
+        self._publish_static()
+        self._wait_for_subscribers()
         messages = self._recording.messages(self._topics - {TF_STATIC})
         try:
-            self._play(itertools.chain(self._beginning(messages), messages))
+            self._play(itertools.chain(self._until_first_estimate(messages), messages))
         except BagError as error:
             self._state.publish(BROKEN + str(error))
             return
@@ -83,27 +83,27 @@ class BagPlayer:
             if rospy.is_shutdown():
                 return
             self._wait_until_due(stamp)
-            self._tell_time(stamp)
+            self._publish_clock(stamp)
             self._publish(topic, message)
 
-    def _beginning(self, messages: Iterator[RecordedMessage]) -> Iterator[RecordedMessage]:
-        """Until shortly after the first scan; ends when a node has made a first estimate of that.
+    def _until_first_estimate(self, messages: Iterator[RecordedMessage]) -> Iterator[RecordedMessage]:
+        """Yield the messages until shortly after the first scan, and wait until a node has used that scan.
 
-        One that is not ready yet would else start in the middle, while the robot drives.
+        A node that is not ready yet would otherwise start in the middle, while the robot drives.
         """
         first: Optional[RecordedMessage] = None
         for played in messages:
             yield played
             if first is None and played.topic in self._scans:
                 first = played
-            if first is not None and played.stamp > first.stamp + BEGINNING_SECONDS:
+            if first is not None and played.stamp > first.stamp + FIRST_SCAN_SECONDS:
                 break
-        deadline = time.monotonic() + LISTENER_SECONDS
+        deadline = time.monotonic() + SUBSCRIBER_TIMEOUT
         while first is not None and self._is_estimate_missing and time.monotonic() < deadline:
             if rospy.is_shutdown():
                 return
             self._publish(first.topic, first.message)
-            time.sleep(BEGINNING_SECONDS)
+            time.sleep(FIRST_SCAN_SECONDS)
 
     def _publish(self, topic: str, message) -> None:
         if topic == "/tf":
@@ -116,8 +116,8 @@ class BagPlayer:
                 return
         self._publishers[topic].publish(message)
 
-    def _tell_static(self) -> None:
-        """All at once: a latched topic keeps only its last message."""
+    def _publish_static(self) -> None:
+        """Publish all static transforms at once: a latched topic keeps only its last message."""
         if TF_STATIC not in self._publishers:
             return
         together = {
@@ -127,12 +127,12 @@ class BagPlayer:
         }
         self._publishers[TF_STATIC].publish(TFMessage(list(together.values())))
 
-    def _wait_for_listeners(self) -> None:
-        """Until somebody listens to the scans, or for half a minute."""
+    def _wait_for_subscribers(self) -> None:
+        """Wait until a node subscribes to the scans, or for half a minute."""
         scans = [self._publishers[topic] for topic in self._scans]
-        deadline = time.monotonic() + LISTENER_SECONDS
+        deadline = time.monotonic() + SUBSCRIBER_TIMEOUT
         while time.monotonic() < deadline and not rospy.is_shutdown():
-            self._tell_time(self._recording.start)
+            self._publish_clock(self._recording.start)
             if any(publisher.get_num_connections() > 0 for publisher in scans):
                 return
             time.sleep(5.0 * CLOCK_SECONDS)
@@ -145,18 +145,18 @@ class BagPlayer:
                     return
                 self._changed.wait(delay)
                 for node in self._pacer.give_up(stamp, time.monotonic()):
-                    rospy.logwarn("%s does not keep up: it is not waited for until it reports again", node)
+                    rospy.logwarn("%s does not keep up: not waited for until it reports progress again", node)
 
-    def _tell_time(self, stamp: float) -> None:
+    def _publish_clock(self, stamp: float) -> None:
         if stamp >= self._clock_stamp + CLOCK_SECONDS or self._clock_stamp == 0.0:
             self._clock_stamp = stamp
         self._clock.publish(Clock(time_of(self._clock_stamp)))
 
-    def _see_estimate(self, message) -> None:
+    def _on_tf(self, message) -> None:
         if any(frame_name(transform.header.frame_id) == MAP_FRAME for transform in message.transforms):
             self._is_estimate_missing = False
 
-    def _keep_progress(self, message) -> None:
+    def _on_progress(self, message) -> None:
         with self._changed:
             self._pacer.report(message.frame_id, message.stamp.to_sec())
             self._changed.notify_all()

@@ -1,4 +1,4 @@
-"""Records a run into bags, by rosbag's recorder as a process of its own."""
+"""Record bags of a run with rosbag's recorder, as a separate process."""
 
 import shutil
 import signal
@@ -12,25 +12,32 @@ from supervision.errors import LaunchError
 from supervision.processes import ending_with_parent
 from supervision.ros.node_api import receives_all
 
+# Topics to record: inputs of localization and mapping with the truth, or everything.
 PROFILES = {
     "inputs": ["/clock", "/tf", "/tf_static", "/odom", "/scan", "/base_pose_ground_truth"],
     "all": ["--all"],
 }
-"""What is recorded: what localization and mapping work on, with the truth; or everything."""
 NODE = "bag_recorder"
 SPLIT_MEGABYTES = 128
 MOST_SPLITS = 8
-# For the index of a bag, on a disk that is busy.
+# Time to write the index of a bag to a busy disk [s].
 CLOSE_SECONDS = 60.0
 FULL_BYTES = 1 << 20
+# Printed by the recorder when the disk is nearly full.
 PAUSED = "Disabling recording"
-"""What the recorder says when the disk is nearly full."""
 
 
 class RosbagProcess:
     """Writes ``folder``/<profile>_<number>.bag, at most the latest gigabyte.
 
-    Should this process be killed, the recorder closes its bag and ends. Raises LaunchError.
+    If this process is killed, the recorder closes its bag and exits.
+
+    Args:
+        profile: Name of a set of topics: inputs or all.
+        folder: Where the bags are written.
+
+    Raises:
+        LaunchError: If the recorder is not installed or the folder is not writable.
     """
 
     def __init__(self, profile: str, folder: Path):
@@ -51,11 +58,11 @@ class RosbagProcess:
             )
 
     def is_ready(self) -> bool:
-        """Whether the inputs that are published reach it; one that has ended is not waited for."""
+        """Whether the recorder is connected to all publishers of the inputs, or has exited."""
         return self._process.poll() is not None or receives_all(f"/{NODE}", PROFILES["inputs"])
 
     def close(self) -> List[str]:
-        """Ends the recording; returns what is missing of it."""
+        """End the recording and return what is missing of it."""
         has_ended = self._process.poll() is not None
         missing = [f"bag: the recorder ended early: {self._cause()}"] if has_ended else []
         self._process.send_signal(signal.SIGINT)
@@ -66,7 +73,7 @@ class RosbagProcess:
             self._process.wait()
         missing += [f"bag: {path.name} was not closed" for path in sorted(self._folder.glob("*.bag.active"))]
         if PAUSED in (self._folder / "record.log").read_text(encoding="utf-8", errors="replace"):
-            missing.append("bag: there was too little space on the disk to record everything")
+            missing.append("bag: incomplete, the disk was nearly full")
         return missing
 
     def _cause(self) -> str:
@@ -76,7 +83,7 @@ class RosbagProcess:
 
 
 def _opened_log(folder: Path) -> BinaryIO:
-    """In a folder made for the bags. Raises LaunchError."""
+    """Create the folder and open the recorder's log in it."""
     try:
         folder.mkdir()
         return (folder / "record.log").open("wb")

@@ -1,4 +1,4 @@
-"""Commands for a robot that move_base drives, ours or the official one, from a few lines of Python.
+"""Python client of move_base, ours or the official one.
 
     robot = Commander()
     if not robot.is_ready(timeout=30.0):
@@ -7,8 +7,8 @@
     outcome = robot.wait()
     print(outcome.result, outcome.reason)
 
-A command returns at once. A new one cancels the one before. Nothing waits for ever: each command ends by its
-time-out, and earlier if the clock, the odometry or move_base is gone.
+A command returns at once and cancels the one before. Every command ends by its time-out, and earlier if the
+clock, the odometry or move_base is lost.
 """
 
 import threading
@@ -34,7 +34,7 @@ from planar_ros.node.listeners import has_all_subscribers
 from planar_ros.node.shell import init_node, shut_down_on_signals
 
 POLL_SECONDS = 0.05
-# Variances of a pose given by hand: m^2, m^2, rad^2 (as rviz gives them).
+# Variances of an initial pose, as set by rviz [m^2, m^2, rad^2].
 INITIAL_POSE_VARIANCES = (0.25, 0.25, 0.0685)
 LOCALIZED_DISTANCE = 0.5
 MAP_ERRORS = {
@@ -45,13 +45,19 @@ MAP_ERRORS = {
 
 
 class CommanderError(PlanarError):
-    """A command could not even be given, and why."""
+    """A command cannot be given."""
 
 
 class Commander:
-    """A client of move_base. Poses are metres and radians in ``frame_id``; time-outs of commands ROS time.
+    """Commands for a robot. Poses are in metres and radians in ``frame_id``, time limits in ROS time.
 
-    It makes the process a node of the given name unless it is one already.
+    Args:
+        name: Name of the node, unless the process is a node already.
+        frame_id: Frame of all poses.
+        base_frame_id: Frame of the robot.
+
+    Attributes:
+        waiting_for: What ``is_ready`` was still waiting for.
     """
 
     def __init__(self, name: str = "commander", frame_id: str = "map", base_frame_id: str = "base_footprint"):
@@ -69,9 +75,13 @@ class Commander:
         self._motion = MotionInterface()
 
     def is_ready(self, timeout: float = 30.0) -> bool:
-        """Whether commands can be given; waits so many wall-clock seconds for that.
+        """Wait until commands can be given.
 
-        ``waiting_for`` then names what was still missing.
+        Args:
+            timeout: Wall-clock time to wait [s].
+
+        Returns:
+            Whether commands can be given; ``waiting_for`` lists what is missing.
         """
         conditions: Dict[str, Callable[[], bool]] = {
             "a node that has started after /use_sim_time was set": _has_right_clock,
@@ -88,19 +98,32 @@ class Commander:
 
     @property
     def pose(self) -> Optional[Pose2]:
-        """Where the robot believes to be; None if it does not know."""
+        """Estimated pose of the robot; None if it is not known."""
         return self._transforms.lookup(self._frame_id, self._base_frame_id)
 
     def go_to(self, x: float, y: float, yaw: float = 0.0, timeout: float = 180.0) -> None:
-        """Drives to a pose."""
+        """Drive to a pose.
+
+        Args:
+            x: Position [m].
+            y: Position [m].
+            yaw: Heading [rad].
+            timeout: Time limit [s].
+        """
         self._begin(GoalTask(self._move_base, Pose2(x, y, yaw), timeout))
 
     def follow_waypoints(
         self, poses: Iterable[Sequence[float]], stop_on_failure: bool = False, timeout: float = 180.0
     ) -> None:
-        """Drives to poses ``(x, y, yaw)`` one after the other, ``timeout`` seconds for each.
+        """Drive to poses one after the other.
 
-        The outcome's ``missed`` are the numbers, from 0, of those that were not reached.
+        Args:
+            poses: Poses (x, y, yaw).
+            stop_on_failure: End at the first pose that is not reached.
+            timeout: Time limit for each pose [s].
+
+        Raises:
+            CommanderError: If there are no poses.
         """
         drives = [GoalTask(self._move_base, Pose2(*pose), timeout) for pose in poses]
         if not drives:
@@ -108,26 +131,39 @@ class Commander:
         self._begin(WaypointsTask(drives, stop_on_failure))
 
     def spin(self, angle: float, speed: float = 0.8, timeout: float = 60.0) -> None:
-        """Turns on the spot, by odometry, counter-clockwise if ``angle`` is positive; radians, rad/s."""
+        """Turn in place, measured by odometry.
+
+        Args:
+            angle: Angle, counter-clockwise if positive [rad].
+            speed: Maximum speed [rad/s].
+            timeout: Time limit [s].
+        """
         self._begin(self._motion.spin(angle, speed, timeout))
 
     def back_up(self, distance: float, speed: float = 0.15, timeout: float = 60.0) -> None:
-        """Drives straight back, by odometry, unless move_base's local costmap shows an obstacle there."""
+        """Drive straight back, measured by odometry, unless the local costmap shows an obstacle there.
+
+        Args:
+            distance: Distance [m].
+            speed: Maximum speed [m/s].
+            timeout: Time limit [s].
+        """
         self._begin(self._motion.back_up(distance, speed, timeout))
 
     def cancel(self) -> None:
-        """Ends the command in progress; its outcome is then CANCELLED."""
+        """Cancel the command in progress; its outcome is CANCELLED."""
         if self._task is not None:
             self._task.cancel()
 
     def is_done(self) -> bool:
-        """Whether the latest command has come to an end."""
+        """Whether the latest command has ended."""
         return self._worker is None or not self._worker.is_alive()
 
     def wait(self, timeout: Optional[float] = None) -> Outcome:
-        """The outcome of the latest command, waited for.
+        """Wait for the outcome of the latest command.
 
-        ``timeout``: wall-clock seconds after which the command is cancelled; it ends by its own otherwise.
+        Args:
+            timeout: Wall-clock time after which the command is cancelled [s]; None: its own time limit.
         """
         deadline = None if timeout is None else time.monotonic() + timeout
         while not self.is_done():
@@ -138,13 +174,17 @@ class Commander:
         return self.outcome()
 
     def feedback(self) -> Feedback:
-        """How far the latest command has come."""
+        """Return the progress of the latest command."""
         if self._task is None:
             raise CommanderError("no command was given yet")
         return self._task.feedback()
 
     def outcome(self) -> Outcome:
-        """How the latest command ended. Raises CommanderError while it has not."""
+        """Return the outcome of the latest command.
+
+        Raises:
+            CommanderError: If there is none yet.
+        """
         if self._task is None:
             raise CommanderError("no command was given yet")
         if self._outcome is None or not self.is_done():
@@ -152,9 +192,16 @@ class Commander:
         return self._outcome
 
     def set_initial_pose(self, x: float, y: float, yaw: float = 0.0, timeout: float = 10.0) -> None:
-        """Tells the localization where the robot is, and waits until it believes it.
+        """Set the pose estimate and wait until localization has adopted it.
 
-        Raises CommanderError if it does not within ``timeout`` wall-clock seconds.
+        Args:
+            x: Position [m].
+            y: Position [m].
+            yaw: Heading [rad].
+            timeout: Wall-clock time to wait [s].
+
+        Raises:
+            CommanderError: If localization does not adopt the pose in time.
         """
         message = PoseWithCovarianceStamped()
         message.header.frame_id, message.header.stamp = self._frame_id, rospy.Time.now()
@@ -164,17 +211,28 @@ class Commander:
         message.pose.covariance = covariance
         deadline = time.monotonic() + timeout
         topic = rospy.resolve_name("initialpose")
-        self._wait_until(lambda: has_all_subscribers(self._initial_pose), deadline, f"nobody hears {topic}")
+        self._wait_until(
+            lambda: has_all_subscribers(self._initial_pose), deadline, f"no node subscribes to {topic}"
+        )
         self._initial_pose.publish(message)
-        told = f"the localization does not take up the pose told on {topic}"
-        self._wait_until(lambda: self._is_localized_at(Pose2(x, y, yaw)), deadline, told)
+        reason = f"localization has not adopted the pose published on {topic} within {timeout:g} s"
+        self._wait_until(lambda: self._is_localized_at(Pose2(x, y, yaw)), deadline, reason)
 
     def clear_costmaps(self, timeout: float = 10.0) -> None:
-        """Has move_base forget the obstacles it has seen. Raises ServiceError."""
+        """Clear the costmaps of move_base.
+
+        Raises:
+            ServiceError: If move_base does not answer.
+        """
         call_service("move_base/clear_costmaps", Empty, Empty._request_class(), timeout)
 
     def change_map(self, path, timeout: float = 20.0) -> None:
-        """Has map_server serve another map. Raises ServiceError or CommanderError."""
+        """Load another map into map_server.
+
+        Raises:
+            ServiceError: If map_server does not answer.
+            CommanderError: If it cannot load the map.
+        """
         if LoadMap is None:
             raise CommanderError("nav_msgs of this system has no LoadMap, with which maps are changed")
         request = LoadMap._request_class(map_url=str(Path(path).resolve()))
@@ -206,5 +264,5 @@ class Commander:
 
 
 def _has_right_clock() -> bool:
-    """Whether this node goes by the clock of the others: rospy decides once, at its start."""
+    """Whether rospy, which decides once at its start, uses the clock of the other nodes."""
     return not (rospy.rostime.is_wallclock() and rospy.get_param("/use_sim_time", False))

@@ -1,4 +1,4 @@
-"""Short motions by odometry: a turn on the spot, a way straight back."""
+"""Short motions measured by odometry: turn in place, drive straight back."""
 
 import math
 import threading
@@ -17,14 +17,19 @@ from planar import OccupancyGrid, Pose2, wrap
 from planar_ros.messages.border import subscribe
 from planar_ros.messages.conversion import OccupancyGridArrays, grid_from_msg, pose2_from_msg
 
+# Maximum speed per remaining distance or angle [1/s].
 SLOW_DOWN = 1.5
-"""A motion's speed is at most so many times what is left of it, per second."""
+# Cost in a published costmap from which on a cell is too close to an obstacle for the robot's centre.
 INSCRIBED = 99
-"""Cells of a published costmap from here on are too close to an obstacle for the robot's centre."""
 
 
 class MotionInterface:
-    """What short motions need: odometry, the local costmap, and the way to the wheels."""
+    """Odometry, local costmap and velocity commands for short motions.
+
+    Attributes:
+        base_in_odom: Latest pose of the base in odom.
+        seen_at: Monotonic time of the latest odometry [s].
+    """
 
     def __init__(self) -> None:
         self.base_in_odom: Optional[Pose2] = None
@@ -49,7 +54,7 @@ class MotionInterface:
         self._commands.publish(message)
 
     def is_blocked(self, pose: Pose2) -> bool:
-        """Whether the local costmap, which is in the odometry's frame, shows an obstacle there."""
+        """Whether the local costmap, which is in the odometry frame, shows an obstacle at a pose."""
         with self._lock:
             if self._grid is None:
                 return False
@@ -76,7 +81,7 @@ class MotionInterface:
 
 
 class MotionTask(CommanderTask):
-    """A turn on the spot (radians) or a straight way (metres), measured by odometry."""
+    """A turn in place [rad] or a straight motion [m]."""
 
     LOOK_AHEAD = 0.2
 
@@ -88,7 +93,7 @@ class MotionTask(CommanderTask):
 
     def run(self) -> Outcome:
         if not math.isfinite(self._amount) or not 0.0 < self._speed < math.inf:
-            return Outcome(Result.FAILED, "the way and the speed must be numbers, the speed not zero")
+            return Outcome(Result.FAILED, "distance and speed must be finite, and speed not zero")
         self._motion.seen_at = time.monotonic()
         try:
             return self._wait(self._move)
@@ -111,7 +116,7 @@ class MotionTask(CommanderTask):
             return Outcome(Result.SUCCEEDED, f"{'turned' if self._is_turn else 'drove'} {self._done:.2f}")
         ahead = Pose2(direction * min(self.LOOK_AHEAD, abs(left)), 0.0)
         if not self._is_turn and self._motion.is_blocked(pose @ ahead):
-            return Outcome(Result.FAILED, f"an obstacle is in the way, {abs(left):.2f} m before the end")
+            return Outcome(Result.FAILED, f"blocked by an obstacle {abs(left):.2f} m before the end")
         velocity = direction * min(self._speed, SLOW_DOWN * abs(left))
         self._motion.publish_velocity(*((0.0, velocity) if self._is_turn else (velocity, 0.0)))
         return None

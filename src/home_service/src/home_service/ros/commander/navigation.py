@@ -1,4 +1,4 @@
-"""Drives by move_base, one or several."""
+"""Commands that are executed by move_base."""
 
 import math
 from typing import List, Optional, Sequence
@@ -11,7 +11,7 @@ from planar import Pose2
 from planar.driving import DriveResult
 from planar_ros.calls.move_base import MoveBaseClient
 
-# Of each result of move_base: what it is called here, and why it came about if move_base does not tell.
+# Result and default reason for each outcome of move_base.
 RESULTS = {
     DriveResult.REACHED: (Result.SUCCEEDED, "goal reached"),
     DriveResult.PREEMPTED: (Result.CANCELLED, "another goal took its place"),
@@ -19,7 +19,7 @@ RESULTS = {
 
 
 class GoalTask(CommanderTask):
-    """A goal for move_base."""
+    """Drives to a goal."""
 
     def __init__(self, move_base: MoveBaseClient, goal: Pose2, timeout: float):
         super().__init__(timeout)
@@ -29,7 +29,7 @@ class GoalTask(CommanderTask):
 
     def run(self) -> Outcome:
         if not all(map(math.isfinite, (self.goal.x, self.goal.y, self.goal.yaw))):
-            return Outcome(Result.FAILED, f"the goal ({self.goal.x}, {self.goal.y}) is not a pose")
+            return Outcome(Result.FAILED, f"the goal {self.goal} is not finite")
         self._pose_before = self._move_base.robot
         self._move_base.send(self.goal)
         outcome = self._wait(self._poll)
@@ -48,12 +48,12 @@ class GoalTask(CommanderTask):
             result, reason = RESULTS.get(ended.result, (Result.FAILED, ended.status.lower()))
             return Outcome(result, ended.text or reason)
         if self._move_base.is_lost(PATIENCE_SECONDS):
-            return Outcome(Result.FAILED, f"{self._move_base.name} is gone")
+            return Outcome(Result.FAILED, f"{self._move_base.name} does not respond any more")
         return None
 
 
 class WaypointsTask(CommanderTask):
-    """Drives one after the other."""
+    """Drives to goals one after the other."""
 
     def __init__(self, drives: Sequence[GoalTask], stop_on_failure: bool):
         super().__init__(math.inf)

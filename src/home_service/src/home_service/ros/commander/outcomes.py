@@ -1,4 +1,4 @@
-"""How far a command of the commander has come, and how it ended."""
+"""Progress and outcome of a command of the commander."""
 
 import enum
 from dataclasses import dataclass
@@ -8,6 +8,8 @@ from planar import Pose2
 
 
 class Result(enum.Enum):
+    """How a command has ended."""
+
     SUCCEEDED = "succeeded"
     FAILED = "failed"
     CANCELLED = "cancelled"
@@ -16,7 +18,13 @@ class Result(enum.Enum):
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a command ended, and why. ``missed``: the numbers of waypoints that were not reached."""
+    """Outcome of a command.
+
+    Attributes:
+        result: How it has ended.
+        reason: Why.
+        missed: Indices of waypoints that were not reached.
+    """
 
     result: Result
     reason: str
@@ -29,9 +37,13 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Feedback:
-    """How far a command has come. ``left``: metres (straight) or radians; None if not known yet.
+    """Progress of a command.
 
-    ``waypoint``: the number, from 0, of the one that the robot is on its way to.
+    Attributes:
+        seconds: ROS time since its start [s].
+        left: Remaining straight-line distance [m] or angle [rad]; None if not known yet.
+        pose: Latest pose of the robot.
+        waypoint: Index of the current waypoint.
     """
 
     seconds: float
