@@ -21,7 +21,7 @@ from turtlesim.srv import Kill, SetPen, Spawn, TeleportAbsolute, TeleportRelativ
 from visualization_msgs.msg import MarkerArray
 from waiting import PATIENCE_SECONDS
 
-MIDDLE, SIDE = 5.544445, 11.088889
+MIDDLE, FLOOR_SIDE = 5.544445, 11.088889
 # So many poses in a row tell their rate.
 POSES = 120
 # Those of the official package.
@@ -66,7 +66,7 @@ class TurtlesimContractTest(unittest.TestCase):
         color = rospy.wait_for_message("/turtle1/color_sensor", Color, PATIENCE_SECONDS)
         return color.r, color.g, color.b
 
-    def tell(self, forward=0.0, turn=0.0):
+    def publish_velocity(self, forward=0.0, turn=0.0):
         twist = Twist()
         twist.linear.x, twist.angular.z = forward, turn
         self.cmd_vel.publish(twist)
@@ -76,7 +76,7 @@ class TurtlesimContractTest(unittest.TestCase):
         for x, theta in ((math.nan, 0.0), (math.inf, 0.0), (1.0, math.nan)):
             with self.assertRaisesRegex(rospy.ServiceException, "means nothing"):
                 teleport(x, 1.0, theta)
-        self.tell(forward=math.nan)
+        self.publish_velocity(forward=math.nan)
         teleport(1.0, 2.0, 0.5)
         self.assertTrue(wait_until(lambda: abs(self.pose().x - 1.0) < 0.01), "it steps on")
 
@@ -107,26 +107,26 @@ class TurtlesimContractTest(unittest.TestCase):
 
     def test_a_command_lasts_one_second(self):
         velocities = []
-        heard = rospy.Subscriber(
+        subscriber = rospy.Subscriber(
             "/turtle1/pose", Pose, lambda pose: velocities.append(pose.linear_velocity), queue_size=1000
         )
-        self.addCleanup(heard.unregister)
+        self.addCleanup(subscriber.unregister)
         self.assertTrue(wait_until(lambda: velocities))
-        self.tell(forward=1.0)
+        self.publish_velocity(forward=1.0)
         self.assertTrue(wait_until(lambda: 1.0 in velocities))
         self.assertTrue(wait_until(lambda: velocities[-1] == 0.0))
         self.assertAlmostEqual(self.pose().x, MIDDLE + 1.0, delta=0.05)
 
     def test_a_wall_stops_the_turtle(self):
-        rospy.ServiceProxy("/turtle1/teleport_absolute", TeleportAbsolute)(SIDE - 0.3, 2.0, 0.0)
-        self.tell(forward=2.0)
-        self.assertTrue(wait_until(lambda: self.pose().x > SIDE - 0.02))
+        rospy.ServiceProxy("/turtle1/teleport_absolute", TeleportAbsolute)(FLOOR_SIDE - 0.3, 2.0, 0.0)
+        self.publish_velocity(forward=2.0)
+        self.assertTrue(wait_until(lambda: self.pose().x > FLOOR_SIDE - 0.02))
         time.sleep(0.5)
-        self.assertLessEqual(self.pose().x, SIDE + 1e-4)
+        self.assertLessEqual(self.pose().x, FLOOR_SIDE + 1e-4)
 
     def test_speeds_that_are_not_finite_are_ignored(self):
-        self.tell(forward=math.nan)
-        self.tell(turn=math.inf)
+        self.publish_velocity(forward=math.nan)
+        self.publish_velocity(turn=math.inf)
         time.sleep(0.3)
         self.assertAlmostEqual(self.pose().x, MIDDLE, places=4)
 

@@ -63,7 +63,7 @@ class TurtleBot3Test(unittest.TestCase):
         publisher.publish(pose)
         wait_until(
             "the localization to believe it",
-            lambda: self._believed().distance_to(START) < 0.3,
+            lambda: self._estimate().distance_to(START) < 0.3,
             BRING_UP_SECONDS,
         )
         client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
@@ -88,8 +88,8 @@ class TurtleBot3Test(unittest.TestCase):
             pose2_to_msg(Pose2(0.1, 0.0, 0.2)),
         )
         drawn.header.frame_id = marker.header.frame_id
-        told = []
-        rospy.Subscriber("cmd_vel", Twist, lambda twist: told.append((twist.linear.x, twist.angular.z)))
+        commands = []
+        rospy.Subscriber("cmd_vel", Twist, lambda twist: commands.append((twist.linear.x, twist.angular.z)))
         wait_until("somebody to hear of it", lambda: has_all_subscribers(feedback), PATIENCE_SECONDS)
         before = self._truth()
 
@@ -98,7 +98,7 @@ class TurtleBot3Test(unittest.TestCase):
             return self._truth().distance_to(before) > 0.1
 
         wait_until("the robot to come along", has_gone, PATIENCE_SECONDS)
-        self.assertIn((0.1, 0.44), [(round(v, 6), round(omega, 6)) for v, omega in told])
+        self.assertIn((0.1, 0.44), [(round(v, 6), round(omega, 6)) for v, omega in commands])
 
     def test_5_who_waits_for_what_is_typed_ends_when_asked_to(self):
         for command in ("turtlebot3_client", "turtlebot3_pointop_key"):
@@ -119,7 +119,7 @@ class TurtleBot3Test(unittest.TestCase):
         states = rospy.wait_for_message("/gazebo/model_states", ModelStates, PATIENCE_SECONDS)
         return pose2_from_msg(states.pose[states.name.index("turtlebot3_burger")])
 
-    def _believed(self):
+    def _estimate(self):
         message = rospy.wait_for_message("amcl_pose", PoseWithCovarianceStamped, BRING_UP_SECONDS)
         return pose2_from_msg(message.pose.pose)
 

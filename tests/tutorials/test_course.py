@@ -102,12 +102,12 @@ class CourseTest(unittest.TestCase):
             wait_until("the company info", lambda: "company info: Home Service" in printed())
 
     def test_the_first_tutorial_is_there_under_both_its_names(self):
-        for package, suffix, heard in (
+        for package, suffix, expected in (
             ("rospy_tutorials", ".py", "I heard hello world"),
             ("roscpp_tutorials", "", "I heard: [hello world"),
         ):
             with running(package, f"listener{suffix}") as printed, running(package, f"talker{suffix}"):
-                wait_until(heard, lambda: heard in printed())  # noqa: B023
+                wait_until(expected, lambda: expected in printed())  # noqa: B023
 
     def test_a_launch_file_can_be_started_later(self):
         code, output = run(

@@ -56,7 +56,7 @@ class Host:
                 raise OSError(ctypes.get_errno(), f"cannot enter {self.name}")
 
 
-class Island:
+class IsolatedHost:
     """A host that reaches nobody but itself; a context that takes it away in the end."""
 
     def __init__(self):
@@ -72,7 +72,7 @@ class Island:
         _ip("netns", "delete", self._host.name)
 
 
-class Cable:
+class NetworkLink:
     """Two hosts that reach each other; a context that takes them away in the end."""
 
     def __init__(self):
@@ -80,7 +80,7 @@ class Cable:
         self.robot = Host(f"robot{number}", "10.77.0.1")
         self.desk = Host(f"desk{number}", "10.77.0.2")
 
-    def __enter__(self) -> "Cable":
+    def __enter__(self) -> "NetworkLink":
         for host in (self.robot, self.desk):
             _ip("netns", "add", host.name)
         _ip(
@@ -108,11 +108,11 @@ class Cable:
             host.stop_all()
             _ip("netns", "delete", host.name)
 
-    def cut(self) -> None:
+    def disconnect(self) -> None:
         """Nothing comes through any more."""
         _ip("-n", self.desk.name, "link", "set", "cable", "down")
 
-    def mend(self) -> None:
+    def reconnect(self) -> None:
         _ip("-n", self.desk.name, "link", "set", "cable", "up")
 
 

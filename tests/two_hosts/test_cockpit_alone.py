@@ -10,7 +10,7 @@ from pathlib import Path
 import rosgraph
 import rostest
 from browser import Browser
-from network import Island, routes_of
+from network import IsolatedHost, routes_of
 from waiting import wait_until
 
 from cockpit.process import FREE_PORT, CockpitProcess
@@ -24,13 +24,13 @@ IS_DRAWN = "[...document.querySelectorAll('canvas')].some((one) => one.width > 1
 @unittest.skipUnless(os.geteuid() == 0, "only root can make network namespaces")
 class CockpitAloneTest(unittest.TestCase):
     def test_the_page_works_where_no_route_leads_anywhere(self):
-        with tempfile.TemporaryDirectory() as folder, Island() as island:
-            island.start(island, "rosmaster", "--core")
-            os.environ.update(island.environment(island))
-            island.enter()  # and so do the cockpit and the browser, its children
-            self.assertEqual(routes_of(island), "")
+        with tempfile.TemporaryDirectory() as folder, IsolatedHost() as isolated:
+            isolated.start(isolated, "rosmaster", "--core")
+            os.environ.update(isolated.environment(isolated))
+            isolated.enter()  # and so do the cockpit and the browser, its children
+            self.assertEqual(routes_of(isolated), "")
             wait_until("a master", rosgraph.is_master_online, START_SECONDS)
-            island.start(island, sys.executable, str(STAGE))
+            isolated.start(isolated, sys.executable, str(STAGE))
             cockpit = CockpitProcess(FREE_PORT, Path(folder) / "cockpit.log", tool="topics")
             try:
                 with Browser() as browser:

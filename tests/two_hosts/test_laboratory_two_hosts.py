@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import rostest
-from network import Cable
+from network import NetworkLink
 
 from laboratory.playing import play
 from laboratory.results.store import Store
@@ -38,29 +38,29 @@ print(*Client(sys.argv[1], timeout=5).scheduler_info(n_workers=-1)["workers"])
 @unittest.skipUnless(os.geteuid() == 0, "only root can make network namespaces")
 class LaboratoryOnTwoHostsTest(unittest.TestCase):
     def test_two_hosts_make_what_one_process_makes(self):
-        with tempfile.TemporaryDirectory() as name, Cable() as cable:
-            folder, scheduler = Path(name), f"tcp://{cable.desk.address}:{PORT}"
+        with tempfile.TemporaryDirectory() as name, NetworkLink() as link:
+            folder, scheduler = Path(name), f"tcp://{link.desk.address}:{PORT}"
             (folder / "errand.yaml").write_text(SCENARIO)
-            options = ("--host", cable.desk.address, "--port", str(PORT), "--no-dashboard")
-            cable.desk.start(cable.desk, sys.executable, "-m", "distributed.cli.dask_scheduler", *options)
-            for host in (cable.desk, cable.robot):
+            options = ("--host", link.desk.address, "--port", str(PORT), "--no-dashboard")
+            link.desk.start(link.desk, sys.executable, "-m", "distributed.cli.dask_scheduler", *options)
+            for host in (link.desk, link.robot):
                 options = ("--nthreads", "1", "--host", host.address, "--no-dashboard", "--no-nanny")
                 worker = (sys.executable, "-m", "distributed.cli.dask_worker", scheduler, *options)
-                host.start(cable.desk, *worker, "--local-directory", str(folder / host.name))
-            self.wait_for_workers(cable, scheduler)
+                host.start(link.desk, *worker, "--local-directory", str(folder / host.name))
+            self.wait_for_workers(link, scheduler)
             words = ("errand.yaml", "--seeds", "0-5", "--scheduler", scheduler, "--output", ".")
             command = (sys.executable, "-m", "laboratory", "evaluate", *words)
-            campaign = cable.desk.start(cable.desk, *command, folder=folder)
+            campaign = link.desk.start(link.desk, *command, folder=folder)
             self.assertEqual(campaign.wait(CAMPAIGN_SECONDS), 0)
             self.assertEqual(self.results_in(folder), self.results_here(folder))
 
-    def wait_for_workers(self, cable, scheduler):
+    def wait_for_workers(self, link, scheduler):
         """Until there is one on each host."""
         deadline, told = time.monotonic() + START_SECONDS, ""
         while time.monotonic() < deadline:
-            ask = ("ip", "netns", "exec", cable.desk.name, sys.executable, "-c", WHO, scheduler)
+            ask = ("ip", "netns", "exec", link.desk.name, sys.executable, "-c", WHO, scheduler)
             told = subprocess.run(ask, capture_output=True, text=True, timeout=START_SECONDS).stdout
-            if cable.desk.address in told and cable.robot.address in told:
+            if link.desk.address in told and link.robot.address in told:
                 return
         self.fail(f"not both workers have come within {START_SECONDS:g} s: {told or 'none'}")
 

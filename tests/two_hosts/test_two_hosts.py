@@ -13,7 +13,7 @@ import rosgraph
 import rospy
 import rostest
 from nav_msgs.msg import Odometry
-from network import Cable
+from network import NetworkLink
 from std_msgs.msg import String
 
 HERE = Path(__file__).resolve().parent
@@ -33,25 +33,25 @@ class TwoHostsTest(unittest.TestCase):
         self._seen, self._states = [], []
 
     def test_an_errand_survives_a_cut_cable(self):
-        with Cable() as cable:
-            cable.robot.start(cable.robot, "rosmaster", "--core")
-            self.enter(cable)
+        with NetworkLink() as link:
+            link.robot.start(link.robot, "rosmaster", "--core")
+            self.enter(link)
             world = f"world_file:={ROOT / 'map' / 'home.world'}"
-            cable.robot.start(cable.robot, "roslaunch", "home_service", "world.launch", world)
+            link.robot.start(link.robot, "roslaunch", "home_service", "world.launch", world)
             self.listen()
             # The robot's side first: it says whose run this is, and that time is simulated.
             self.wait_until(lambda: self._seen, START_SECONDS, "no simulator")
             files = (f"map_file:={ROOT / 'map' / 'home.yaml'}", f"zones_file:={HERE / 'zones.yaml'}")
-            cable.desk.start(cable.robot, "roslaunch", "home_service", "desk.launch", *files)
+            link.desk.start(link.robot, "roslaunch", "home_service", "desk.launch", *files)
             try:
-                self.watch(cable)
+                self.watch(link)
             finally:
                 rospy.signal_shutdown("done")
 
-    def enter(self, cable):
+    def enter(self, link):
         """From here on this process is on the robot's host."""
-        os.environ.update(cable.robot.environment(cable.robot))
-        cable.robot.enter()
+        os.environ.update(link.robot.environment(link.robot))
+        link.robot.enter()
         self.wait_until(rosgraph.is_master_online, START_SECONDS, "no master")
 
     def listen(self):
@@ -59,13 +59,13 @@ class TwoHostsTest(unittest.TestCase):
         rospy.Subscriber("base_pose_ground_truth", Odometry, self.keep_truth, queue_size=10)
         rospy.Subscriber("pick_objects/state", String, self.keep_state, queue_size=10)
 
-    def watch(self, cable):
+    def watch(self, link):
         self.wait_until(lambda: self.speed() > DRIVING, START_SECONDS, "the robot does not start")
         for node in ON_DESK:
-            self.assertEqual(self.host_of(node), cable.desk.address, node)
-        self.assertEqual(self.host_of("/sim_bridge"), cable.robot.address)
+            self.assertEqual(self.host_of(node), link.desk.address, node)
+        self.assertEqual(self.host_of("/sim_bridge"), link.robot.address)
 
-        cable.cut()
+        link.disconnect()
         cut_at = self.now()
         self.wait_until(lambda: self.standing_since(cut_at), 10.0, "the robot drives on without commands")
         stopped_after = self.standing_since(cut_at) - cut_at
@@ -74,10 +74,10 @@ class TwoHostsTest(unittest.TestCase):
         print(f"stopped {stopped_after:.2f} s of simulated time after the cut")
         self.assertLess(stopped_after, COMMAND_SECONDS + BRAKING_SECONDS)
 
-        cable.mend()
-        mended = time.monotonic()
+        link.reconnect()
+        reconnected_at = time.monotonic()
         self.wait_until(lambda: self.speed() > DRIVING, RESTART_SECONDS, "the robot does not drive on")
-        print(f"driving again {time.monotonic() - mended:.1f} s after the cable was mended")
+        print(f"driving again {time.monotonic() - reconnected_at:.1f} s after the cable was mended")
         ends = ("delivered", "failed")
         self.wait_until(lambda: self._states[-1:] and self._states[-1] in ends, ERRAND_SECONDS, "no end")
         self.assertEqual(self._states[-1], "delivered")

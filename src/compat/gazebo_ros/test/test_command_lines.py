@@ -1,6 +1,6 @@
 import pytest
 
-from gazebo_ros.gzserver import world_of
+from gazebo_ros.gzserver import world_argument
 from gazebo_ros.spawn_options import parse
 
 ROBOT = ["-urdf", "-param", "robot_description", "-model", "my_robot"]
@@ -17,11 +17,11 @@ ROBOT = ["-urdf", "-param", "robot_description", "-model", "my_robot"]
     ],
 )
 def test_the_world_is_found_among_gazebos_options(line):
-    assert world_of(line.split()) == "home.world"
+    assert world_argument(line.split()) == "home.world"
 
 
 def test_no_world_among_options_alone():
-    assert world_of(["-e", "ode", "--verbose", "-u"]) is None
+    assert world_argument(["-e", "ode", "--verbose", "-u"]) is None
 
 
 def test_words_that_begin_like_an_option_are_not_that_option():

@@ -5,36 +5,36 @@ import math
 import numpy as np
 import pytest
 
-from multirobot_map_merge.merging import merged
+from multirobot_map_merge.map_merging import merge_maps
 from planar import OCCUPIED, UNKNOWN, PlanarError, Pose2, grid_from_picture
 
 ROOM = grid_from_picture("####\n#..#\n####", 0.5)
 
 
 def test_one_map_stays_as_it_is():
-    whole = merged([(Pose2(), ROOM)])
-    assert np.array_equal(whole.cells, ROOM.cells)
-    assert (whole.origin, whole.resolution) == (ROOM.origin, 0.5)
+    merged = merge_maps([(Pose2(), ROOM)])
+    assert np.array_equal(merged.cells, ROOM.cells)
+    assert (merged.origin, merged.resolution) == (ROOM.origin, 0.5)
 
 
 def test_two_rooms_stand_side_by_side_and_what_is_between_is_unknown():
-    whole = merged([(Pose2(), ROOM), (Pose2(3.0, 0.0), ROOM)])
-    assert whole.cells.shape == (3, 10)
-    assert (whole.cells[:, 4:6] == UNKNOWN).all()
-    assert np.array_equal(whole.cells[:, 6:], ROOM.cells)
+    merged = merge_maps([(Pose2(), ROOM), (Pose2(3.0, 0.0), ROOM)])
+    assert merged.cells.shape == (3, 10)
+    assert (merged.cells[:, 4:6] == UNKNOWN).all()
+    assert np.array_equal(merged.cells[:, 6:], ROOM.cells)
 
 
 def test_a_map_may_be_turned():
-    whole = merged([(Pose2(0.0, 0.0, math.pi / 2.0), ROOM)])
-    assert (whole.cells == OCCUPIED).sum() == (ROOM.cells == OCCUPIED).sum()
-    assert whole.cells.shape in [(4, 3), (5, 3), (4, 4), (5, 4)]
+    merged = merge_maps([(Pose2(0.0, 0.0, math.pi / 2.0), ROOM)])
+    assert (merged.cells == OCCUPIED).sum() == (ROOM.cells == OCCUPIED).sum()
+    assert merged.cells.shape in [(4, 3), (5, 3), (4, 4), (5, 4)]
 
 
 def test_where_two_disagree_the_more_occupied_is_believed():
     free = grid_from_picture("....\n....\n....", 0.5)
-    assert np.array_equal(merged([(Pose2(), free), (Pose2(), ROOM)]).cells, ROOM.cells)
+    assert np.array_equal(merge_maps([(Pose2(), free), (Pose2(), ROOM)]).cells, ROOM.cells)
 
 
 def test_a_robot_that_is_nowhere_near_is_refused():
     with pytest.raises(PlanarError, match="the merged map would have"):
-        merged([(Pose2(), ROOM), (Pose2(1e7, 1e7), ROOM)])
+        merge_maps([(Pose2(), ROOM), (Pose2(1e7, 1e7), ROOM)])

@@ -3,8 +3,8 @@ from pathlib import Path
 
 from run_project.checkout.layout import read_checkout
 from run_project.checkout.placement import Placement
-from run_project.preparing import building
-from run_project.preparing.building import (
+from run_project.preparation import building
+from run_project.preparation.building import (
     Workspace,
     broken_configurations,
     build,

@@ -2,20 +2,20 @@ from pathlib import Path
 
 import pytest
 
-from run_project.checkout.layout import Checkout, Kind
-from run_project.checkout.placement import absolute_paths, mounts_to, paths_named, place
+from run_project.checkout.layout import Checkout, CheckoutKind
+from run_project.checkout.placement import absolute_paths, best_placement, referenced_paths, resolve_mount
 
 
 def sources(*files):
-    return Checkout(Path("/somewhere/repo"), Kind.SOURCES, None, {"pick": Path("pick")}, files)
+    return Checkout(Path("/somewhere/repo"), CheckoutKind.SOURCES, None, {"pick": Path("pick")}, files)
 
 
 def workspace(folder, *files):
-    return Checkout(Path("/somewhere/repo"), Kind.WORKSPACE, Path(folder), {}, files)
+    return Checkout(Path("/somewhere/repo"), CheckoutKind.WORKSPACE, Path(folder), {}, files)
 
 
 def placed(checkout, script, text):
-    return place(checkout, script, {script: text}, home="/home/me", user="me")
+    return best_placement(checkout, script, {script: text}, home="/home/me", user="me")
 
 
 FILES = ("pick/package.xml", "world/home.world", "scripts/home_service.sh")
@@ -95,12 +95,12 @@ def test_a_script_starts_where_the_files_it_names_are_found(text, start):
 
 
 def test_packages_are_found_as_rospack_does():
-    named = set(paths_named("cat $(rospack find pick)/../world/x", "/@", "/@", {"pick": "/@/src/pick"}))
+    named = set(referenced_paths("cat $(rospack find pick)/../world/x", "/@", "/@", {"pick": "/@/src/pick"}))
     assert named == {"/@/src/world/x"}
 
 
 def test_comments_name_nothing():
-    assert not list(paths_named("# cd x/y; cat a/b", "/@", "/@", {}))
+    assert not list(referenced_paths("# cd x/y; cat a/b", "/@", "/@", {}))
 
 
 @pytest.mark.parametrize(
@@ -112,8 +112,8 @@ def test_topics_and_the_systems_own_files_are_no_paths_of_the_project(path):
 
 def test_a_path_below_a_mount_is_found_in_its_source():
     mounts = {"/home/author/ws": Path()}
-    assert mounts_to("/home/author/ws/src/a", mounts) == Path("src/a")
-    assert mounts_to("/home/author/ws2/src/a", mounts) is None
+    assert resolve_mount("/home/author/ws/src/a", mounts) == Path("src/a")
+    assert resolve_mount("/home/author/ws2/src/a", mounts) is None
 
 
 MAP = "image: {}\nresolution: 0.05\n"
@@ -132,6 +132,6 @@ def test_an_image_named_where_it_once_was_is_found_beside_its_map(named, mounts,
     script = "scripts/home_service.sh"
     texts = {script: "cat /home/author/ws/src/maps/map.yaml", "maps/map.yaml": MAP.format(named)}
     checkout = sources(*FILES, "maps/map.yaml", "maps/map.pgm", "old_maps/map.pgm")
-    placement = place(checkout, script, texts, home="/home/me", user="me")
+    placement = best_placement(checkout, script, texts, home="/home/me", user="me")
     assert placement.mounts == {"/home/author/ws": Path(), **mounts}
     assert placement.links == links

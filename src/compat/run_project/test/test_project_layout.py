@@ -1,8 +1,6 @@
 import pytest
 
-from run_project.checkout.layout import Kind, choose_script, read_checkout
-from run_project.checkout.maps import maps_without_image
-from run_project.errors import ProjectError
+from run_project.checkout.layout import CheckoutKind, ProjectError, choose_script, read_checkout
 
 
 def checkout(folder, *files):
@@ -16,7 +14,7 @@ def checkout(folder, *files):
 
 def test_a_folder_with_src_is_a_workspace(tmp_path):
     project = checkout(tmp_path, "src/pick/package.xml", "src/scripts/home_service.sh")
-    assert project.kind is Kind.WORKSPACE
+    assert project.kind is CheckoutKind.WORKSPACE
     assert str(project.workspace) == "."
     assert {name: str(folder) for name, folder in project.packages.items()} == {"pick": "src/pick"}
 
@@ -25,18 +23,18 @@ def test_a_workspace_is_found_in_a_folder_of_the_repository(tmp_path):
     project = checkout(
         tmp_path, "catkin_ws/src/pick/package.xml", "catkin_ws/src/mark/package.xml", "README.md"
     )
-    assert project.kind is Kind.WORKSPACE
+    assert project.kind is CheckoutKind.WORKSPACE
     assert str(project.workspace) == "catkin_ws"
 
 
 def test_packages_without_src_above_them_are_the_content_of_src(tmp_path):
     project = checkout(tmp_path, "pick/package.xml", "pick/src/pick.cpp", "mark/package.xml")
-    assert project.kind is Kind.SOURCES
+    assert project.kind is CheckoutKind.SOURCES
     assert project.workspace is None
 
 
 def test_a_package_xml_at_the_top_is_one_package(tmp_path):
-    assert checkout(tmp_path, "package.xml", "src/pick.cpp").kind is Kind.PACKAGE
+    assert checkout(tmp_path, "package.xml", "src/pick.cpp").kind is CheckoutKind.PACKAGE
 
 
 def test_what_a_build_left_behind_is_not_read(tmp_path):
@@ -90,7 +88,7 @@ def test_maps_whose_image_is_not_there_are_known(tmp_path):
     for name, image in (("home", "home.pgm"), ("office", "/home/me/office.pgm"), ("attic", "attic.pgm")):
         (tmp_path / f"maps/{name}.yaml").write_text(f"image: {image}\nresolution: 0.05\norigin: [0, 0, 0]\n")
     (tmp_path / "maps/rviz.yaml").write_text("image: logo.png\n")
-    assert maps_without_image(read_checkout(tmp_path)) == ["maps/attic.yaml (attic.pgm)"]
+    assert read_checkout(tmp_path).maps_without_image() == ["maps/attic.yaml (attic.pgm)"]
 
 
 def test_what_git_lfs_has_not_fetched_is_known(tmp_path):

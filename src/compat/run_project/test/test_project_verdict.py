@@ -1,36 +1,37 @@
 import pytest
 
-from run_project.judging.complaints import complaints_in
-from run_project.judging.verdict import Ledger, judge
+from run_project.judging.log_errors import find_log_errors
+from run_project.judging.run_record import ProjectRunRecord
+from run_project.judging.verdict import judge
 from run_project.stand_ins.nodelet import command_for
-from run_project.stand_ins.rviz_topics import topics_of
+from run_project.stand_ins.rviz_topics import displayed_topics
 
 ACTIVE, PREEMPTED, SUCCEEDED, ABORTED = 1, 2, 3, 4
 
 
-def ledger_of(*endings, places=((1.0, 2.0),)):
-    ledger = Ledger()
+def record_of(*endings, places=((1.0, 2.0),)):
+    record = ProjectRunRecord()
     for number, ending in enumerate(endings):
-        ledger.see_goal(float(number), f"goal-{number}", places[number % len(places)])
-        ledger.see_status(float(number), f"goal-{number}", ending, "text")
-    return ledger
+        record.add_goal(float(number), f"goal-{number}", places[number % len(places)])
+        record.update_status(float(number), f"goal-{number}", ending, "text")
+    return record
 
 
 def test_all_goals_reached_is_success():
-    verdict = judge(ledger_of(SUCCEEDED, SUCCEEDED))
+    verdict = judge(record_of(SUCCEEDED, SUCCEEDED))
     assert verdict.success
     assert verdict.reason.startswith("2 of 2 goals reached")
 
 
 @pytest.mark.parametrize("ending", [PREEMPTED, ABORTED, ACTIVE])
 def test_a_goal_that_ended_otherwise_is_a_failure_with_the_reason(ending):
-    verdict = judge(ledger_of(SUCCEEDED, ending))
+    verdict = judge(record_of(SUCCEEDED, ending))
     assert not verdict.success
     assert "1 of 2 goals reached; goal 2 at (1.00, 2.00)" in verdict.reason
 
 
 def test_a_goal_that_was_sent_again_until_it_was_reached_is_no_failure():
-    verdict = judge(ledger_of(ABORTED, SUCCEEDED))
+    verdict = judge(record_of(ABORTED, SUCCEEDED))
     assert verdict.success
     assert verdict.reason.startswith("1 of 2 goals reached")
 
@@ -39,12 +40,12 @@ def test_a_goal_that_was_sent_again_until_it_was_reached_is_no_failure():
     ("metres", "ending", "success"), [(0.3, PREEMPTED, True), (0.7, PREEMPTED, False), (0.3, ABORTED, False)]
 )
 def test_a_goal_that_is_cancelled_when_the_robot_is_there_is_reached(metres, ending, success):
-    ledger = Ledger()
-    ledger.see_goal(0.0, "goal", (1.0, 2.0))
-    ledger.see_position((1.0 + metres, 2.0))
-    ledger.see_status(1.0, "goal", ending, "")
-    assert ledger.goals["goal"].distance == metres
-    assert judge(ledger).success is success
+    record = ProjectRunRecord()
+    record.add_goal(0.0, "goal", (1.0, 2.0))
+    record.update_position((1.0 + metres, 2.0))
+    record.update_status(1.0, "goal", ending, "")
+    assert record.goals["goal"].distance == metres
+    assert judge(record).success is success
 
 
 @pytest.mark.parametrize(
@@ -52,13 +53,13 @@ def test_a_goal_that_is_cancelled_when_the_robot_is_there_is_reached(metres, end
     [(("aborted", "succeeded"), True), (("succeeded", "succeeded"), False), ((), False)],
 )
 def test_how_goals_end_can_be_declared(expected, success):
-    verdict = judge(ledger_of(ABORTED, SUCCEEDED, places=(A, B)), expected=expected)
+    verdict = judge(record_of(ABORTED, SUCCEEDED, places=(A, B)), expected=expected)
     assert verdict.success is success
     assert verdict.reason.startswith("1 of 2 goals reached; aborted, succeeded, ")
 
 
 def test_a_run_that_was_cut_short_is_never_as_expected():
-    assert not judge(ledger_of(ABORTED), "interrupted", expected=("aborted",)).success
+    assert not judge(record_of(ABORTED), "interrupted", expected=("aborted",)).success
 
 
 A, B, C = (1.0, 2.0), (3.0, 4.0), (5.0, 6.0)
@@ -77,94 +78,94 @@ A, B, C = (1.0, 2.0), (3.0, 4.0), (5.0, 6.0)
     ],
 )
 def test_a_project_that_goes_its_rounds_for_ever_is_recognized_after_two(places, goals):
-    assert ledger_of(*[SUCCEEDED] * len(places), places=places).two_rounds == goals
-    assert ledger_of(ABORTED, *[SUCCEEDED] * (len(places) - 1), places=places).two_rounds == 0
+    assert record_of(*[SUCCEEDED] * len(places), places=places).goals_of_two_rounds == goals
+    assert record_of(ABORTED, *[SUCCEEDED] * (len(places) - 1), places=places).goals_of_two_rounds == 0
 
 
 def test_the_goal_of_a_third_round_does_not_count():
-    verdict = judge(ledger_of(*[SUCCEEDED] * 4, ACTIVE, places=(A, B)))
+    verdict = judge(record_of(*[SUCCEEDED] * 4, ACTIVE, places=(A, B)))
     assert verdict.success
     assert verdict.reason.startswith("4 of 4 goals reached")
 
 
 def test_of_a_marker_that_goes_with_the_robot_the_ends_are_told():
-    ledger = ledger_of(SUCCEEDED)
+    record = record_of(SUCCEEDED)
     for step in range(20):
-        ledger.see_marker(float(step), ("parcel", 0), (float(step), 0.0))
-    reason = judge(ledger).reason
+        record.update_marker(float(step), ("parcel", 0), (float(step), 0.0))
+    reason = judge(record).reason
     assert "shown at (3.00, 0.00), ... 12 more ..., shown at (16.00, 0.00)" in reason
 
 
 def test_a_run_that_was_cut_short_is_a_failure():
-    assert not judge(ledger_of(SUCCEEDED), "interrupted").success
+    assert not judge(record_of(SUCCEEDED), "interrupted").success
 
 
 def test_a_project_that_did_nothing_failed():
-    assert not judge(Ledger()).success
+    assert not judge(ProjectRunRecord()).success
 
 
 def test_markers_alone_are_enough_unless_the_script_is_an_errand():
-    ledger = Ledger()
-    ledger.see_marker(0.0, ("shapes", 0), (1.0, 2.0))
-    assert judge(ledger).success
-    assert judge(ledger, is_errand=True).reason == "no goal sent; markers: shown at (1.00, 2.00)"
-    assert not judge(ledger, is_errand=True).success
+    record = ProjectRunRecord()
+    record.update_marker(0.0, ("shapes", 0), (1.0, 2.0))
+    assert judge(record).success
+    assert judge(record, requires_goals=True).reason == "no goal sent; markers: shown at (1.00, 2.00)"
+    assert not judge(record, requires_goals=True).success
 
 
 def test_a_status_is_told_once():
-    ledger = Ledger()
-    assert ledger.see_status(1.0, "a", ACTIVE, "") == "goal 1 active"
-    assert ledger.see_status(1.2, "a", ACTIVE, "") is None
-    assert not ledger.is_quiet
-    ledger.see_status(1.4, "a", SUCCEEDED, "Goal reached.")
-    assert ledger.is_quiet
+    record = ProjectRunRecord()
+    assert record.update_status(1.0, "a", ACTIVE, "") == "goal 1 active"
+    assert record.update_status(1.2, "a", ACTIVE, "") is None
+    assert not record.all_goals_ended
+    record.update_status(1.4, "a", SUCCEEDED, "Goal reached.")
+    assert record.all_goals_ended
 
 
 def test_a_marker_tells_where_it_is_shown_and_when_it_is_hidden():
-    ledger = Ledger()
+    record = ProjectRunRecord()
     for place in ((1.0, 2.0), (1.0, 2.01), None, None, (3.0, 4.0)):
-        ledger.see_marker(0.0, ("shapes", 0), place)
-    assert ledger.markers == ["shown at (1.00, 2.00)", "hidden", "shown at (3.00, 4.00)"]
-    ledger.hide_all(1.0)
-    assert ledger.markers[-1] == "hidden"
+        record.update_marker(0.0, ("shapes", 0), place)
+    assert record.markers == ["shown at (1.00, 2.00)", "hidden", "shown at (3.00, 4.00)"]
+    record.delete_all_markers(1.0)
+    assert record.markers[-1] == "hidden"
 
 
-def blink(ledger, times):
+def blink(record, times):
     """A marker that is shown and hidden, and two that are shown in turn with ever new numbers, for ever."""
     for second in range(times):
-        ledger.see_marker(10.0 + second, ("blinking", 0), A)
-        ledger.see_marker(10.5 + second, ("blinking", 0), None)
-        ledger.see_marker(10.7 + second, ("renewed", second), B)
+        record.update_marker(10.0 + second, ("blinking", 0), A)
+        record.update_marker(10.5 + second, ("blinking", 0), None)
+        record.update_marker(10.7 + second, ("renewed", second), B)
 
 
 def test_markers_that_blink_or_are_shown_anew_for_ever_are_no_news():
-    ledger = ledger_of(SUCCEEDED)
-    blink(ledger, 100)
-    assert ledger.latest_news < 12.0
-    assert ledger.markers == ["shown at (1.00, 2.00)", "hidden", "shown at (3.00, 4.00)"]
+    record = record_of(SUCCEEDED)
+    blink(record, 100)
+    assert record.last_event_time < 12.0
+    assert record.markers == ["shown at (1.00, 2.00)", "hidden", "shown at (3.00, 4.00)"]
 
 
 def test_what_a_marker_does_again_after_another_goal_is_news():
-    ledger = ledger_of(SUCCEEDED)
-    blink(ledger, 2)
-    ledger.see_goal(20.0, "another", B)
-    assert ledger.see_marker(21.0, ("blinking", 0), A) == "marker shown at (1.00, 2.00)"
+    record = record_of(SUCCEEDED)
+    blink(record, 2)
+    record.add_goal(20.0, "another", B)
+    assert record.update_marker(21.0, ("blinking", 0), A) == "marker shown at (1.00, 2.00)"
 
 
 def test_an_object_is_away_between_its_being_picked_up_and_set_down():
-    ledger = Ledger()
-    away = [ledger.is_object_away]
+    record = ProjectRunRecord()
+    away = [record.is_object_picked_up]
     for place in (A, None, B):
-        ledger.see_marker(0.0, ("", 0), place)
-        away.append(ledger.is_object_away)
+        record.update_marker(0.0, ("", 0), place)
+        away.append(record.is_object_picked_up)
     assert away == [False, False, True, False]
 
 
 def test_distance_leaves_out_where_the_robot_was_put():
-    ledger = Ledger()
+    record = ProjectRunRecord()
     for position in ((0.0, 0.0), (0.3, 0.2), (9.0, 9.0), (9.1, 9.0)):
-        ledger.see_position(position)
-    assert ledger.distance_driven == pytest.approx(0.1 + 0.13**0.5)
+        record.update_position(position)
+    assert record.distance_driven == pytest.approx(0.1 + 0.13**0.5)
 
 
 def test_rviz_displays_what_its_configuration_enables():
@@ -180,12 +181,12 @@ Visualization Manager:
     - {Class: rviz/Image, Enabled: true, Image Topic: /camera/rgb/image_raw}
     - {Class: rviz/PointCloud2, Enabled: true, Topic: /camera/depth/points}
 """
-    assert topics_of(config) == {"/move_base/NavfnROS/plan"}
+    assert displayed_topics(config) == {"/move_base/NavfnROS/plan"}
 
 
 @pytest.mark.parametrize("config", ["", "a: [", "- 1", "Visualization Manager: 3"])
 def test_a_configuration_that_cannot_be_read_displays_nothing(config):
-    assert topics_of(config) == set()
+    assert displayed_topics(config) == set()
 
 
 def test_the_velocity_smoother_passes_velocities_on():
@@ -197,11 +198,11 @@ def test_the_velocity_smoother_passes_velocities_on():
 
 def test_complaints_are_errors_told_once_with_the_windows_name(tmp_path):
     (tmp_path / "rosrun-pick.log").write_text("fine\n\x1b[31m[ERROR] [1]: lost\n[ERROR] [1]: lost\n")
-    assert complaints_in(tmp_path) == ["rosrun-pick: [ERROR] [1]: lost"]
+    assert find_log_errors(tmp_path) == ["rosrun-pick: [ERROR] [1]: lost"]
 
 
 def test_who_bumps_against_the_same_thing_again_is_counted_but_not_told_again():
-    ledger = Ledger()
-    told = [ledger.see_collision(name) for name in ("sofa::link", "sofa::link", "wall::link", "sofa::link")]
-    assert told == ["collision with sofa::link", None, "collision with wall::link", None]
-    assert len(ledger.collisions) == 4
+    record = ProjectRunRecord()
+    events = [record.add_collision(name) for name in ("sofa::link", "sofa::link", "wall::link", "sofa::link")]
+    assert events == ["collision with sofa::link", None, "collision with wall::link", None]
+    assert len(record.collisions) == 4

@@ -1,6 +1,6 @@
 import pytest
 
-from run_project.preparing.python2 import in_python3
+from run_project.preparation.python2 import to_python3
 
 
 @pytest.mark.parametrize(
@@ -15,9 +15,9 @@ from run_project.preparing.python2 import in_python3
     ],
 )
 def test_python_2_becomes_python_3(source, converted):
-    assert in_python3(source) == converted
+    assert to_python3(source) == converted
 
 
 @pytest.mark.parametrize("source", ["print('hello')\n", "\tno python at all (\n", "\0", ""])
 def test_all_else_stays_as_it_is(source):
-    assert in_python3(source) == source
+    assert to_python3(source) == source

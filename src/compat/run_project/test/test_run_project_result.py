@@ -8,10 +8,10 @@ import fastjsonschema
 import pytest
 
 from run_project import cli
-from run_project.judging.verdict import Ledger
+from run_project.judging.run_record import ProjectRunRecord
 from run_project.options import parse
-from run_project.preparing.building import Workspace
-from run_project.ros.running import Job
+from run_project.preparation.building import Workspace
+from run_project.ros.project_run import ProjectCommand
 from supervision.display import Display
 from supervision.interruption import INTERRUPTED, RunInterruptedError
 
@@ -22,13 +22,13 @@ class FakeRun:
     """Stands for a run in which a goal is reached, or which is interrupted."""
 
     def __init__(self, is_interrupted):
-        ledger = Ledger()
-        ledger.see_goal(1.0, "goal", (1.0, 0.5))
-        ledger.see_position((1.0, 0.6))
-        ledger.see_status(2.0, "goal", 3, "")
-        ledger.see_marker(3.0, ("cube", 0), (1.0, 0.5))
-        self.observer = SimpleNamespace(ledger=ledger, simulated_time=12.34)
-        self.person = None
+        record = ProjectRunRecord()
+        record.add_goal(1.0, "goal", (1.0, 0.5))
+        record.update_position((1.0, 0.6))
+        record.update_status(2.0, "goal", 3, "")
+        record.update_marker(3.0, ("cube", 0), (1.0, 0.5))
+        self.observer = SimpleNamespace(record=record, simulated_time=12.34)
+        self.user = None
         self._is_interrupted = is_interrupted
 
     def __enter__(self):
@@ -47,11 +47,11 @@ def test_the_result_of_a_project_follows_the_published_schema(is_interrupted, co
     monkeypatch.setattr(cli, "ProjectRun", lambda *_: FakeRun(is_interrupted))
     (tmp_path / "log").mkdir()
     (tmp_path / "log/window.log").write_text("[ERROR] [12.0]: no map\n")
-    job = Job(["true"], tmp_path, {}, tmp_path)
+    command = ProjectCommand(["true"], tmp_path, {}, tmp_path)
     workspace = Workspace(tmp_path, tmp_path, {}, tmp_path, missing={"rtabmap": "not there"})
     about = {"project": "/home/somebody", "script": "home_service.sh"}
     options = parse(["/home/somebody", "--seed", "4"])
-    assert cli.run_job(options, job, tmp_path, workspace, Display(), about) == code
+    assert cli.run_command(options, command, tmp_path, workspace, Display(), about) == code
     result = json.loads((tmp_path / "result.json").read_text())
     fastjsonschema.compile(json.loads(SCHEMA.read_text()))(result)
     assert result["goals"][0]["status"] == "succeeded"
@@ -63,10 +63,10 @@ def test_what_stands_behind_two_dashes_is_for_the_script():
     options = parse(["project", "--rviz", "--", "--seed", "4"])
     assert options.script_arguments == ("--seed", "4")
     assert options.seed == 0
-    assert options.wanted_speed == 1.0
+    assert options.effective_speed == 1.0
 
 
 @pytest.mark.parametrize(("more", "is_drawn_nowhere"), [([], True), (["--rviz"], False)])
 def test_windows_of_opencv_need_no_screen_unless_people_look_on(tmp_path, more, is_drawn_nowhere):
-    told = cli.told_to_windows(parse([str(tmp_path), *more]), tmp_path / "log")
-    assert (told.get("QT_QPA_PLATFORM") == "offscreen") == is_drawn_nowhere
+    environment = cli.window_environment(parse([str(tmp_path), *more]), tmp_path / "log")
+    assert (environment.get("QT_QPA_PLATFORM") == "offscreen") == is_drawn_nowhere

@@ -1,4 +1,4 @@
-from run_project.preparing.selection import select
+from run_project.preparation.selection import select_packages
 
 COMPILED = "find_package(catkin REQUIRED COMPONENTS {0})\nadd_executable(x x.cpp)\n"
 
@@ -18,7 +18,7 @@ def stand_in(folder, name, *parts):
 
 
 def choose(folders, stand_ins=None, there=("roscpp",)):
-    return select(folders, stand_ins or {}, there.__contains__)
+    return select_packages(folders, stand_ins or {}, there.__contains__)
 
 
 def test_the_authors_own_packages_are_built(tmp_path):

@@ -3,7 +3,7 @@ import shutil
 
 import rospkg
 
-from run_project.stand_ins.folders import STAND_INS, without_stand_ins
+from run_project.stand_ins import STAND_INS, without_stand_ins
 
 
 def install_rviz(prefix):

@@ -4,8 +4,8 @@ import time
 import psutil
 import pytest
 
-from run_project.ros.processes import waits_for_keys
-from run_project.stand_ins.terminal import TYPED, open_window
+from run_project.ros.processes import waits_for_input
+from run_project.stand_ins.terminal import INPUT_VARIABLE, open_window
 from run_project.stand_ins.windows import commands_of, returns_at_once, title_of
 
 
@@ -60,11 +60,11 @@ def test_a_window_that_asks_gets_what_is_typed_and_waits_for_more(tmp_path, monk
     script = tmp_path / "ask"
     script.write_text(f"#!{sys.executable}\nprint('yes or no?', input(), flush=True)\ninput()\n")
     script.chmod(0o755)
-    monkeypatch.setenv(TYPED, "another=no\nask=yes, please")
+    monkeypatch.setenv(INPUT_VARIABLE, "another=no\nask=yes, please")
     window = open_window([str(script)], tmp_path)
     try:
         assert _soon(lambda: "yes or no? yes, please" in (tmp_path / "ask.log").read_text())
-        assert _soon(lambda: waits_for_keys(psutil.Process(window.pid)))
+        assert _soon(lambda: waits_for_input(psutil.Process(window.pid)))
         assert window.poll() is None
     finally:
         window.kill()

@@ -1,4 +1,4 @@
 #!/usr/bin/env python3
 from planar_ros.node.entry import call
 
-call("turtle_world.ros.transforms:broadcast")
+call("turtle_world.ros.tf_demo:broadcast")

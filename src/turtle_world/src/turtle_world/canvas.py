@@ -13,7 +13,7 @@ Point = Tuple[float, float]
 # turtlesim's window and the height of its turtle, which is a metre, in pixels.
 PIXELS, PIXELS_PER_METRE = 500, 45
 # The side of the floor, metres.
-SIDE = (PIXELS - 1) / PIXELS_PER_METRE
+FLOOR_SIDE = (PIXELS - 1) / PIXELS_PER_METRE
 BACKGROUND: Color = (0x45, 0x56, 0xFF)
 _TURTLE_COLOR: Color = (0x2E, 0x2E, 0x2E)
 
@@ -36,19 +36,19 @@ class Stroke:
     points: List[Point] = field(default_factory=list)
     _heading: float = 0.0
 
-    def lengthen(self, end: Point) -> None:
+    def extend(self, end: Point) -> None:
         """Goes on to ``end``: one that lies in a strip of a pixel along the last part lengthens that.
 
         (The strip of Reumann and Witkam, 1974, so that a line has no more corners than can be seen.)
         """
-        if len(self.points) > 1 and self._goes_straight_on_to(end):
+        if len(self.points) > 1 and self._is_collinear(end):
             self.points[-1] = end
         else:
             x, y = self.points[-1]
             self._heading = math.atan2(end[1] - y, end[0] - x)
             self.points.append(end)
 
-    def _goes_straight_on_to(self, end: Point) -> bool:
+    def _is_collinear(self, end: Point) -> bool:
         (before, _), (now, aside) = self._from_corner(self.points[-1]), self._from_corner(end)
         return now >= before and abs(aside) <= 0.5 / PIXELS_PER_METRE
 
@@ -79,16 +79,16 @@ class Canvas:
         if last is None or last.pen != pen or last.points[-1] != start:
             last = Stroke(turtle, pen, [start])
             self.strokes.append(last)
-        last.lengthen(end)
+        last.extend(end)
 
-    def newest_strokes(self, most_points: int) -> List[Stroke]:
+    def latest_strokes(self, max_points: int) -> List[Stroke]:
         """Those drawn last, that have so many points together; of the oldest of them its end."""
         shown: List[Stroke] = []
         for stroke in reversed(self.strokes):
-            if most_points < 2:
+            if max_points < 2:
                 break
-            shown.append(replace(stroke, points=stroke.points[-most_points:]))
-            most_points -= len(shown[-1].points)
+            shown.append(replace(stroke, points=stroke.points[-max_points:]))
+            max_points -= len(shown[-1].points)
         return shown[::-1]
 
     def color_at(self, x: float, y: float) -> Color:
@@ -112,4 +112,4 @@ class Canvas:
 
 def _pixel(x: float, y: float) -> Tuple[float, float]:
     """Column and row of a place in metres."""
-    return x * PIXELS_PER_METRE, (SIDE - y) * PIXELS_PER_METRE
+    return x * PIXELS_PER_METRE, (FLOOR_SIDE - y) * PIXELS_PER_METRE

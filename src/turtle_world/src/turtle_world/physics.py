@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple
 
 from sim_bridge.physics.bullet import BulletClient, pybullet
-from turtle_world.canvas import SIDE
+from turtle_world.canvas import FLOOR_SIDE
 
 # turtlesim's timer, seconds.
 PERIOD = 0.016
@@ -15,7 +15,7 @@ WALL = 1.0
 TURTLE_GROUP, WALL_GROUP = 1, 2
 
 
-class Place(NamedTuple):
+class TurtlePose(NamedTuple):
     """Metres and radians."""
 
     x: float
@@ -23,7 +23,7 @@ class Place(NamedTuple):
     theta: float
 
 
-class Physics:
+class TurtlePhysics:
     """Bodies that slide over the floor as they are told, through each other but not through the walls.
 
     As in turtlesim, the centre of a body comes as far as the edge of the floor: the walls stand back.
@@ -33,15 +33,15 @@ class Physics:
         self._bullet = BulletClient()
         self._bullet.setPhysicsEngineParameter(fixedTimeStep=PERIOD, numSubSteps=1)
         self._shape = self._bullet.createCollisionShape(pybullet.GEOM_CYLINDER, radius=RADIUS, height=HEIGHT)
-        middle, reach = 0.5 * SIDE, 0.5 * SIDE + RADIUS + WALL
+        middle, reach = 0.5 * FLOOR_SIDE, 0.5 * FLOOR_SIDE + RADIUS + WALL
         for along_x, along_y in ((1, 0), (-1, 0), (0, 1), (0, -1)):
             half = [WALL if along_x else reach + WALL, WALL if along_y else reach + WALL, HEIGHT]
             box = self._bullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=half)
             self._add(0.0, box, middle + along_x * reach, middle + along_y * reach, WALL_GROUP, TURTLE_GROUP)
 
-    def add(self, place: Place) -> int:
+    def add(self, pose: TurtlePose) -> int:
         """A new body at a place on the floor; returns its number."""
-        number = self._add(MASS, self._shape, place.x, place.y, TURTLE_GROUP, WALL_GROUP)
+        number = self._add(MASS, self._shape, pose.x, pose.y, TURTLE_GROUP, WALL_GROUP)
         # It turns about its own axis only, and nothing brakes it.
         spin_inertia = 0.5 * MASS * RADIUS**2
         self._bullet.changeDynamics(
@@ -53,18 +53,18 @@ class Physics:
             lateralFriction=0.0,
             restitution=0.0,
         )
-        self.move(number, place)
+        self.set_pose(number, pose)
         return number
 
     def remove(self, number: int) -> None:
         self._bullet.removeBody(number)
 
-    def move(self, number: int, place: Place) -> None:
+    def set_pose(self, number: int, pose: TurtlePose) -> None:
         """Puts a body somewhere else."""
-        turned = (0.0, 0.0, math.sin(0.5 * place.theta), math.cos(0.5 * place.theta))
-        self._bullet.resetBasePositionAndOrientation(number, (place.x, place.y, 0.0), turned)
+        turned = (0.0, 0.0, math.sin(0.5 * pose.theta), math.cos(0.5 * pose.theta))
+        self._bullet.resetBasePositionAndOrientation(number, (pose.x, pose.y, 0.0), turned)
 
-    def push(self, number: int, velocity_x: float, velocity_y: float, turn: float) -> None:
+    def set_velocity(self, number: int, velocity_x: float, velocity_y: float, turn: float) -> None:
         """Sets the speeds of a body for the next step: m/s in the world, and rad/s."""
         self._bullet.resetBaseVelocity(number, (velocity_x, velocity_y, 0.0), (0.0, 0.0, turn))
 
@@ -72,9 +72,9 @@ class Physics:
         """Moves on by one period."""
         self._bullet.stepSimulation()
 
-    def place_of(self, number: int) -> Place:
+    def pose_of(self, number: int) -> TurtlePose:
         (x, y, _), (_, _, z, w) = self._bullet.getBasePositionAndOrientation(number)
-        return Place(x, y, 2.0 * math.atan2(z, w))
+        return TurtlePose(x, y, 2.0 * math.atan2(z, w))
 
     def _add(self, mass, shape, x, y, group, mask):
         number = self._bullet.createMultiBody(mass, shape, basePosition=(x, y, 0.0))

@@ -7,24 +7,24 @@ from typing import List, Optional
 
 EMPTY_WORLD = Path(__file__).parent / "empty.world"
 # Options of Gazebo 7 to 11, as server or with its window, that take a value; all others are flags.
-VALUED = (
+OPTIONS_WITH_VALUE = (
     "-e --physics -p --play -s --server-plugin -o --profile --seed --iters --initial_sim_time "
     "--record_encoding --record_path --record_period --record_filter -g --gui-plugin --gui-client-plugin"
 ).split()
 
 
-def world_of(arguments: List[str]) -> Optional[str]:
+def world_argument(arguments: List[str]) -> Optional[str]:
     """The world among gzserver's arguments; None if there is none."""
     words = iter(arguments)
     for word in words:
-        if word in VALUED:
+        if word in OPTIONS_WITH_VALUE:
             next(words, None)
         elif not word.startswith(("-", "_")) and ":=" not in word:
             return word
     return None
 
 
-def found(world: str, folders: List[Path]) -> Path:
+def find_world(world: str, folders: List[Path]) -> Path:
     """The world's file: as named, or below one of the folders; the empty world if it is Gazebo's own."""
     path = Path(world)
     candidates = [path, *(folder / path for folder in folders)]
@@ -39,6 +39,6 @@ def main() -> None:
     from sim_bridge.ros.node import main as simulate
 
     folders = [Path(folder) for folder in os.environ.get("GAZEBO_RESOURCE_PATH", "").split(":") if folder]
-    world = found(world_of(sys.argv[1:]) or EMPTY_WORLD.name, folders)
+    world = find_world(world_argument(sys.argv[1:]) or EMPTY_WORLD.name, folders)
     sys.argv[1:] = [word for word in sys.argv[1:] if ":=" in word] + [f"_world:={world}", "_robot:=''"]
     simulate()

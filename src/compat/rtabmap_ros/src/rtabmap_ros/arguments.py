@@ -7,7 +7,7 @@ FRAMES = {"base_frame": "frame_id", "odom_frame": "odom_frame_id"}
 GRID = "grid_map"
 
 
-def as_slam_lite(arguments: List[str], parameter: Callable[[str, str], str]) -> List[str]:
+def slam_lite_arguments(arguments: List[str], parameter: Callable[[str, str], str]) -> List[str]:
     """slam_lite's arguments for rtabmap's: without its options, with its frames, its map called as its grid.
 
     ``parameter``: the value of a private parameter of the node, or what is given for it.

@@ -11,22 +11,27 @@ from typing import Dict, List, Optional, Sequence
 
 from cockpit.process import FREE_PORT, CockpitProcess
 from planar import PlanarError
-from run_project.checkout.layout import Checkout, choose_script, is_errand, read_checkout
-from run_project.checkout.maps import maps_without_image
-from run_project.checkout.placement import READ_SUFFIXES, Placement, place
-from run_project.checkout.told import told_by
-from run_project.errors import BuildError, ProjectError
-from run_project.judging.complaints import complaints_in
-from run_project.judging.verdict import Ledger, Verdict, judge
-from run_project.lessons.plan import Lesson, Plan, plan_of
-from run_project.options import Options, parse
-from run_project.preparing.building import Workspace, build, copy_checkout, environment
-from run_project.preparing.private_root import prefix
-from run_project.ros.headless_rviz import SHOWN
-from run_project.ros.people import DEEDS
-from run_project.ros.running import Job, ProjectRun
-from run_project.stand_ins.folders import PACKAGE_FOLDER
-from run_project.stand_ins.terminal import LOGS, TYPED
+from run_project.checkout.dry_run import recorded_calls
+from run_project.checkout.layout import (
+    Checkout,
+    ProjectError,
+    choose_script,
+    is_home_service_script,
+    read_checkout,
+)
+from run_project.checkout.placement import READ_SUFFIXES, Placement, best_placement
+from run_project.course.launch_plan import CourseProject, ProjectLaunchPlan, find_launch_plan
+from run_project.judging.log_errors import find_log_errors
+from run_project.judging.run_record import ProjectRunRecord
+from run_project.judging.verdict import ProjectVerdict, judge
+from run_project.options import ProjectOptions, parse
+from run_project.preparation.building import BuildError, Workspace, build, copy_checkout, environment
+from run_project.preparation.private_root import private_mount_command
+from run_project.ros.headless_rviz import RVIZ_VARIABLE
+from run_project.ros.project_run import ProjectCommand, ProjectRun
+from run_project.ros.scripted_user import PROCEDURES
+from run_project.stand_ins import PACKAGE_FOLDER
+from run_project.stand_ins.terminal import INPUT_VARIABLE, LOG_FOLDER_VARIABLE
 from supervision.display import Display, print_error
 from supervision.errors import LaunchError
 from supervision.interruption import INTERRUPTED, RunInterruptedError, raise_when_interrupted
@@ -35,14 +40,19 @@ from supervision.run_folder import create_run_folder, write_result
 from supervision.versions import versions
 
 FAILURE, BAD_INPUT = 1, 2
-WORK = PACKAGE_FOLDER.parents[2] / "build" / "projects"
+WORK_FOLDER = PACKAGE_FOLDER.parents[2] / "build" / "projects"
 # Windows that programs open by themselves, as those of OpenCV, are drawn nowhere.
-WITHOUT_SCREEN = {"QT_QPA_PLATFORM": "offscreen"}
-LARGEST_TEXT = 3_000_000
+OFFSCREEN = {"QT_QPA_PLATFORM": "offscreen"}
+MAX_TEXT_BYTES = 3_000_000
 ROS_FOLDER = re.compile(r"/opt/ros/[a-z]+")
 # Of the simulator: what it does not leave behind at speed 0, and what projects count on as Gazebo does so:
 # many compare places in the map with /odom, which does not drift there.
-SIMULATOR = {"wait_for": "amcl move_base", "odometry_rate": 200, "noise": "ideal", "range_noise": 0.01}
+SIMULATOR_PARAMETERS = {
+    "wait_for": "amcl move_base",
+    "odometry_rate": 200,
+    "noise": "ideal",
+    "range_noise": 0.01,
+}
 
 
 # How long the page is left open when the project is done.
@@ -65,7 +75,7 @@ def main(arguments: Optional[List[str]] = None) -> int:
         return BAD_INPUT
 
 
-def run(options: Options) -> int:
+def run(options: ProjectOptions) -> int:
     """Builds and runs the project that the options name."""
     if options.rviz and not os.environ.get("DISPLAY"):
         raise ProjectError("--rviz: there is no display (the variable DISPLAY is not set)")
@@ -73,14 +83,14 @@ def run(options: Options) -> int:
     started = time.time()
     checkout = read_checkout(options.path)
     with _WorkFolder(checkout.root) as work, Display() as display:
-        plan = _plan(checkout, options)
-        script = _script(checkout, options, plan, work.path)
-        texts = read_texts(checkout, script)
-        placement = find_place(checkout, script, texts, work.path, options.script_arguments)
+        plan = _launch_plan(checkout, options)
+        script = _prepare_script(checkout, options, plan, work.path)
+        texts = read_path_texts(checkout, script)
+        placement = find_placement(checkout, script, texts, work.path, options.script_arguments)
         folder = create_run_folder(options.output.resolve(), "run_project")
         logs = folder / "log"
         display.print(f"{checkout.root}: {checkout.kind.value}, {len(checkout.packages)} packages in it")
-        _warn(checkout, display)
+        _warn_about_missing_files(checkout, display)
         display.print(f"logs in {logs}")
         workspace = copy_checkout(checkout, placement, work.path)
         display.show("building ...")
@@ -88,50 +98,54 @@ def run(options: Options) -> int:
         display.print(f"built in {time.time() - started:.0f} s")
         if options.build_only:
             return 0
-        job = _job(options, workspace, placement, texts, script, work.path, logs)
+        command = _project_command(options, workspace, placement, texts, script, work.path, logs)
         for target in sorted(placement.mounts):
             display.print(f"provides {target}, for this run alone")
-        display.print(f"runs {_name_of(script, plan)}; times are simulated:")
-        about = {"project": str(checkout.root), "script": _name_of(script, plan)}
-        return run_job(options, job, folder, workspace, display, about, plan)
+        display.print(f"runs {_script_name(script, plan)}; times are simulated:")
+        about = {"project": str(checkout.root), "script": _script_name(script, plan)}
+        return run_command(options, command, folder, workspace, display, about, plan)
 
 
-def _warn(checkout: Checkout, display: Display) -> None:
+def _warn_about_missing_files(checkout: Checkout, display: Display) -> None:
     """Says what is lacking that nobody can make up for."""
     for lacking, files in (
         ("not fetched, git lfs pull does that", checkout.lfs_pointers()),
-        ("maps whose image is not in the checkout", maps_without_image(checkout)),
+        ("maps whose image is not in the checkout", checkout.maps_without_image()),
     ):
         if files:
             display.print(f"warning: {lacking}: {', '.join(files)}")
 
 
-def _plan(checkout: Checkout, options: Options) -> Optional[Plan]:
+def _launch_plan(checkout: Checkout, options: ProjectOptions) -> Optional[ProjectLaunchPlan]:
     """The lesson of the course that it is, if it has no script for it."""
-    named = options.script in [lesson.value for lesson in Lesson]
-    if not named and (options.script is not None or any(is_errand(str(s)) for s in checkout.scripts())):
+    named = options.script in [project.value for project in CourseProject]
+    if not named and (
+        options.script is not None or any(is_home_service_script(str(s)) for s in checkout.scripts())
+    ):
         return None
-    plan = plan_of(checkout.packages, read_texts(checkout), options.script)
+    plan = find_launch_plan(checkout.packages, read_path_texts(checkout), options.script)
     if named and plan is None:
         raise ProjectError(f"{checkout.root}: no launch files of {options.script} in it")
     return plan
 
 
-def _script(checkout: Checkout, options: Options, plan: Optional[Plan], work: Path) -> str:
+def _prepare_script(
+    checkout: Checkout, options: ProjectOptions, plan: Optional[ProjectLaunchPlan], work: Path
+) -> str:
     """The script to run, relative to the checkout; that of a lesson is made in the folder ``work``."""
     if plan is None:
         return str(choose_script(checkout, options.script))
-    made = work / f"{plan.lesson.value}.sh"
+    made = work / f"{plan.project.value}.sh"
     made.write_text(plan.script())
     made.chmod(0o755)
     return str(made)
 
 
-def _name_of(script: str, plan: Optional[Plan]) -> str:
-    return script if plan is None else plan.lesson.value
+def _script_name(script: str, plan: Optional[ProjectLaunchPlan]) -> str:
+    return script if plan is None else plan.project.value
 
 
-def find_place(
+def find_placement(
     checkout: Checkout, script: str, texts: Dict[str, str], work: Path, arguments: Sequence[str]
 ) -> Placement:
     """Where the checkout has to lie by what its files name, and by what its script tells other programs.
@@ -139,54 +153,56 @@ def find_place(
     Adds the latter to the script's text.
     """
     home, user = str(Path.home()), os.environ.get("USER", "root")
-    placement = place(checkout, script, texts, home, user)
+    placement = best_placement(checkout, script, texts, home, user)
     copy = copy_checkout(checkout, placement, work)
-    told = told_by(copy.checkout / script, work / "tree" / placement.start, arguments)
-    texts[script] += "\n" + "\n".join(line for line in told.splitlines() if str(work) not in line)
-    return place(checkout, script, texts, home, user)
+    recorded = recorded_calls(copy.checkout / script, work / "tree" / placement.start, arguments)
+    texts[script] += "\n" + "\n".join(line for line in recorded.splitlines() if str(work) not in line)
+    return best_placement(checkout, script, texts, home, user)
 
 
-def read_texts(checkout: Checkout, script: str = "") -> Dict[str, str]:
+def read_path_texts(checkout: Checkout, script: str = "") -> Dict[str, str]:
     """The contents of the files that may name paths."""
     texts = {}
     for file in {*checkout.files, *([script] if script else [])}:
         path = checkout.root / file
         is_text = path.suffix in READ_SUFFIXES or file == script
-        if is_text and path.is_file() and path.stat().st_size < LARGEST_TEXT:
+        if is_text and path.is_file() and path.stat().st_size < MAX_TEXT_BYTES:
             texts[file] = path.read_text(errors="replace")
     return texts
 
 
-def _job(
-    options: Options,
+def _project_command(
+    options: ProjectOptions,
     workspace: Workspace,
     placement: Placement,
     texts: Dict[str, str],
     script: str,
     work: Path,
     logs: Path,
-) -> Job:
+) -> ProjectCommand:
     tree = work / "tree"
     mounts = {Path(target): tree / source for target, source in placement.mounts.items()}
     for ros in sorted({found for text in texts.values() for found in ROS_FOLDER.findall(text)}):
         if not Path(ros).exists():
-            mounts[Path(ros)] = _stand_in_for_ros(work / Path(ros).name, workspace)
+            mounts[Path(ros)] = _ros_distribution_substitute(work / Path(ros).name, workspace)
     root = work / "root"
     root.mkdir(exist_ok=True)
     file = workspace.checkout / script
     shell = [] if file.read_bytes()[:2] == b"#!" else ["bash"]
     command = [*shell, str(file), *options.script_arguments]
-    variables = {**environment(workspace), **told_to_windows(options, logs)}
-    return Job(command, tree / placement.start, variables, work, prefix(mounts, root))
+    variables = {**environment(workspace), **window_environment(options, logs)}
+    return ProjectCommand(
+        command, tree / placement.start, variables, work, private_mount_command(mounts, root)
+    )
 
 
-def told_to_windows(options: Options, logs: Path) -> Dict[str, str]:
+def window_environment(options: ProjectOptions, logs: Path) -> Dict[str, str]:
     """The environment of what runs in windows, and of what stands in for these."""
-    screen = {SHOWN: "1"} if options.rviz else WITHOUT_SCREEN
-    return {LOGS: str(logs), TYPED: "\n".join(options.type), **screen}
+    screen = {RVIZ_VARIABLE: "1"} if options.rviz else OFFSCREEN
+    return {LOG_FOLDER_VARIABLE: str(logs), INPUT_VARIABLE: "\n".join(options.type), **screen}
 
 
-def _stand_in_for_ros(folder: Path, workspace: Workspace) -> Path:
+def _ros_distribution_substitute(folder: Path, workspace: Workspace) -> Path:
     """What is seen as /opt/ros/<distribution>: setting it up sets up the project's workspace."""
     folder.mkdir(exist_ok=True)
     for shell in ("bash", "sh", "zsh"):
@@ -194,34 +210,34 @@ def _stand_in_for_ros(folder: Path, workspace: Workspace) -> Path:
     return folder
 
 
-def run_job(
-    options: Options,
-    job: Job,
+def run_command(
+    options: ProjectOptions,
+    command: ProjectCommand,
     folder: Path,
     workspace: Workspace,
     display: Display,
     about: Dict[str, str],
-    plan: Optional[Plan] = None,
+    plan: Optional[ProjectLaunchPlan] = None,
 ) -> int:
     """Runs the script, judges what it did, and writes that down; returns the exit code."""
     started = time.monotonic()
     parameters = _parameters(options, plan)
-    run = ProjectRun(job, folder / "log", parameters, display, DEEDS[plan.lesson] if plan else None)
+    run = ProjectRun(command, folder / "log", parameters, display, PROCEDURES[plan.project] if plan else None)
     failure, is_interrupted = None, False
     try:
         with run:
             if options.record:
                 run.record(folder / "run.bag")
-            failure = _watch(run, job, options, folder, display)
+            failure = _watch_run(run, command, options, folder, display)
     except RunInterruptedError as error:
         failure, is_interrupted = str(error), True
-    ledger = run.observer.ledger
-    verdict = _judged(run, failure, is_errand(about["script"]), options)
-    complaints = complaints_in(folder / "log")
+    record = run.observer.record
+    verdict = _verdict_of(run, failure, is_home_service_script(about["script"]), options)
+    complaints = find_log_errors(folder / "log")
     found = {
         "success": verdict.success,
         "reason": verdict.reason,
-        **ledger.findings(),
+        **record.findings(),
         "simulated_seconds": round(run.observer.simulated_time, 1),
         "wall_seconds": round(time.monotonic() - started, 1),
         "speed": parameters["/gazebo/speed"],
@@ -231,23 +247,27 @@ def run_job(
     }
     always = {"command": "run_project", "versions": versions(), "missing": []}
     path = write_result(folder, {**always, **about, **found})
-    _report(display, verdict, ledger, complaints)
+    _report(display, verdict, record, complaints)
     display.print(f"result in {path}, a log of each window in {folder / 'log'}")
     return INTERRUPTED if is_interrupted else 0 if verdict.success else FAILURE
 
 
-def _judged(run: ProjectRun, failure: Optional[str], is_of_home_service: bool, options: Options) -> Verdict:
-    if run.person is None:
-        return judge(run.observer.ledger, failure, is_of_home_service, options.expect)
-    return run.person.outcome.verdict(failure)
+def _verdict_of(
+    run: ProjectRun, failure: Optional[str], requires_goals: bool, options: ProjectOptions
+) -> ProjectVerdict:
+    if run.user is None:
+        return judge(run.observer.record, failure, requires_goals, options.expect)
+    return run.user.results.verdict(failure)
 
 
-def _watch(run: ProjectRun, job: Job, options: Options, folder: Path, display: Display) -> Optional[str]:
+def _watch_run(
+    run: ProjectRun, command: ProjectCommand, options: ProjectOptions, folder: Path, display: Display
+) -> Optional[str]:
     """Why the project cannot go on, or None; with its page in the browser beside, if that is wanted."""
-    if not options.is_on_the_web:
+    if not options.shows_cockpit:
         return run.watch(options.timeout)
     log = folder / "log" / "cockpit.log"
-    cockpit = CockpitProcess(options.web_port or FREE_PORT, log, run.environment(), prefix=job.prefix)
+    cockpit = CockpitProcess(options.web_port or FREE_PORT, log, run.environment(), prefix=command.prefix)
     try:
         display.print(f"cockpit: {cockpit.url}")
         failure = run.watch(options.timeout)
@@ -258,15 +278,15 @@ def _watch(run: ProjectRun, job: Job, options: Options, folder: Path, display: D
         cockpit.close()
 
 
-def _parameters(options: Options, plan: Optional[Plan]) -> Dict[str, object]:
+def _parameters(options: ProjectOptions, plan: Optional[ProjectLaunchPlan]) -> Dict[str, object]:
     """What the simulator is told; every other parameter is the project's own business.
 
     A person who drives the robot has to keep up, so a lesson runs in real time if nothing else is wanted;
     nobody waits for the nodes of navigation where there is none.
     """
-    speed = options.wanted_speed if plan is None or options.speed is not None else 1.0
-    navigates = plan is None or plan.lesson is Lesson.LOCALIZE
-    simulator = SIMULATOR if navigates else {**SIMULATOR, "wait_for": ""}
+    speed = options.effective_speed if plan is None or options.speed is not None else 1.0
+    navigates = plan is None or plan.project is CourseProject.LOCALIZE
+    simulator = SIMULATOR_PARAMETERS if navigates else {**SIMULATOR_PARAMETERS, "wait_for": ""}
     return {
         "/use_sim_time": True,
         "/gazebo/speed": speed,
@@ -275,11 +295,13 @@ def _parameters(options: Options, plan: Optional[Plan]) -> Dict[str, object]:
     }
 
 
-def _report(display: Display, verdict: Verdict, ledger: Ledger, complaints: List[str]) -> None:
+def _report(
+    display: Display, verdict: ProjectVerdict, record: ProjectRunRecord, complaints: List[str]
+) -> None:
     if not verdict.success:
         for complaint in complaints:
             display.print(f"  | {complaint}")
-    display.print(f"drove {ledger.distance_driven:.1f} m, {len(ledger.collisions)} collisions")
+    display.print(f"drove {record.distance_driven:.1f} m, {len(record.collisions)} collisions")
     display.print(f"{'SUCCESS' if verdict.success else 'FAILURE'}: {verdict.reason}")
 
 
@@ -288,7 +310,7 @@ class _WorkFolder:
 
     def __init__(self, root: Path):
         name = re.sub(r"[^\w-]", "_", root.name)
-        self.path = WORK / f"{name}-{hashlib.sha256(str(root).encode()).hexdigest()[:8]}"
+        self.path = WORK_FOLDER / f"{name}-{hashlib.sha256(str(root).encode()).hexdigest()[:8]}"
 
     def __enter__(self):
         self.path.mkdir(parents=True, exist_ok=True)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Optional, Sequence, Tuple
 
-from run_project.judging.verdict import FINAL
+from run_project.judging.run_record import FINAL_STATUSES
 from supervision import command_line
 from supervision.command_line import argument, option
 
@@ -25,22 +25,22 @@ def _seconds(text: str) -> float:
     return value
 
 
-def _endings(text: str) -> Tuple[str, ...]:
+def _goal_statuses(text: str) -> Tuple[str, ...]:
     endings = tuple(text.replace(",", " ").split())
-    wrong = [ending for ending in endings if ending not in FINAL]
+    wrong = [ending for ending in endings if ending not in FINAL_STATUSES]
     if wrong or not endings:
-        raise argparse.ArgumentTypeError(f"of {', '.join(sorted(FINAL))}, one a goal, got {text!r}")
+        raise argparse.ArgumentTypeError(f"of {', '.join(sorted(FINAL_STATUSES))}, one a goal, got {text!r}")
     return endings
 
 
-def _typed(text: str) -> str:
+def _window_input(text: str) -> str:
     if not text.partition("=")[0] or "=" not in text or "\n" in text:
         raise argparse.ArgumentTypeError(f"must be WINDOW=TEXT, got {text!r}")
     return text
 
 
 @dataclass(frozen=True)
-class Options:
+class ProjectOptions:
     """Runs somebody's home-service project, unmodified and headless.
 
     ``script_arguments``: what stands after ``--``.
@@ -59,12 +59,12 @@ class Options:
     seed: int = option(0, "of every noise", type=int)
     timeout: float = option(600.0, "seconds of wall time", type=_seconds)
     expect: Optional[Tuple[str, ...]] = option(
-        None, "how its goals are to end, one after the other: aborted,succeeded", type=_endings
+        None, "how its goals are to end, one after the other: aborted,succeeded", type=_goal_statuses
     )
     type: Tuple[str, ...] = option(
         (),
         "what to type into windows that ask, as add_markers=0",
-        type=_typed,
+        type=_window_input,
         nargs="+",
         metavar="WINDOW=TEXT",
     )
@@ -77,17 +77,17 @@ class Options:
     script_arguments: Tuple[str, ...] = ()
 
     @property
-    def wanted_speed(self) -> float:
+    def effective_speed(self) -> float:
         """Simulated seconds per second; 0: as fast as the nodes keep up. Real time where people look on."""
-        return float(self.rviz or self.is_on_the_web) if self.speed is None else self.speed
+        return float(self.rviz or self.shows_cockpit) if self.speed is None else self.speed
 
     @property
-    def is_on_the_web(self) -> bool:
+    def shows_cockpit(self) -> bool:
         return self.web or self.web_port is not None
 
 
-def parse(words: Sequence[str]) -> Options:
+def parse(words: Sequence[str]) -> ProjectOptions:
     """Ends the process on --help and on nonsense."""
     end = words.index("--") if "--" in words else len(words)
-    options = command_line.parse(Options, words[:end], "run_project.sh", allow_abbreviations=False)
+    options = command_line.parse(ProjectOptions, words[:end], "run_project.sh", allow_abbreviations=False)
     return replace(options, script_arguments=tuple(words[end + 1 :]))

@@ -6,7 +6,7 @@ import math
 from planar import Twist2, wrap
 
 # Metres ahead and aside that have to be free; how far it turns away from what is not.
-AHEAD, ASIDE, ESCAPE = 0.7, 0.6, math.radians(30.0)
+CLEARANCE_AHEAD, CLEARANCE_ASIDE, ESCAPE_ANGLE = 0.7, 0.6, math.radians(30.0)
 FORWARD, RIGHT_TURN, LEFT_TURN = Twist2(0.3, 0.0), Twist2(0.0, -1.5), Twist2(0.0, 1.5)
 
 
@@ -25,13 +25,13 @@ class Wanderer:
 
     def advance(self, ahead: float, left: float, right: float, yaw: float) -> Twist2:
         """The velocity for now. The free distances are metres: straight ahead, 30 degrees to either side."""
-        if self._state is not _State.LOOKING and abs(wrap(yaw - self._from_yaw)) >= ESCAPE:
+        if self._state is not _State.LOOKING and abs(wrap(yaw - self._from_yaw)) >= ESCAPE_ANGLE:
             self._state = _State.LOOKING
         if self._state is _State.LOOKING:
-            self._state, self._from_yaw = self._look(ahead, left, right), yaw
+            self._state, self._from_yaw = self._choose_direction(ahead, left, right), yaw
         return {_State.LOOKING: FORWARD, _State.RIGHT: RIGHT_TURN, _State.LEFT: LEFT_TURN}[self._state]
 
-    def _look(self, ahead: float, left: float, right: float) -> _State:
-        if ahead < AHEAD or left < ASIDE:
+    def _choose_direction(self, ahead: float, left: float, right: float) -> _State:
+        if ahead < CLEARANCE_AHEAD or left < CLEARANCE_ASIDE:
             return _State.RIGHT
-        return _State.LEFT if right < ASIDE else _State.LOOKING
+        return _State.LEFT if right < CLEARANCE_ASIDE else _State.LOOKING

@@ -7,7 +7,7 @@ from geometry_msgs.msg import Point, Quaternion
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker, MarkerArray
 
-from turtle_world.canvas import PIXELS_PER_METRE, SIDE, Color
+from turtle_world.canvas import FLOOR_SIDE, PIXELS_PER_METRE, Color
 from turtle_world.physics import HEIGHT, RADIUS
 from turtle_world.world import TurtleWorld
 
@@ -17,48 +17,48 @@ BODY_COLOR: Color = (0x2E, 0x2E, 0x2E)
 STROKE_HEIGHT = 0.01
 FLOOR_THICKNESS = 0.02
 # Of all strokes, so that who draws for hours does not fill up the network; the picture has all.
-MOST_POINTS = 5000
+MAX_POINTS = 5000
 
 
-class Markers:
+class TurtleMarkers:
     """Publishes all that is to be seen, if anybody looks."""
 
     def __init__(self):
         self._publisher = rospy.Publisher("~markers", MarkerArray, queue_size=1)
 
-    def show(self, world: TurtleWorld) -> None:
+    def publish(self, world: TurtleWorld) -> None:
         if self._publisher.get_num_connections() == 0:
             return
         everything = [Marker(action=Marker.DELETEALL), _floor(world.canvas.background)]
         for number, name in enumerate(world.names):
-            everything += [_body(number, world.place_of(name)), _nose(number, world.place_of(name))]
+            everything += [_body(number, world.pose_of(name)), _heading_arrow(number, world.pose_of(name))]
         everything += [
-            _line(number, stroke) for number, stroke in enumerate(world.canvas.newest_strokes(MOST_POINTS))
+            _line(number, stroke) for number, stroke in enumerate(world.canvas.latest_strokes(MAX_POINTS))
         ]
         self._publisher.publish(everything)
 
 
 def _floor(color):
     marker = _marker("floor", 0, Marker.CUBE, color)
-    marker.scale.x = marker.scale.y = SIDE
+    marker.scale.x = marker.scale.y = FLOOR_SIDE
     marker.scale.z = FLOOR_THICKNESS
-    marker.pose.position = Point(0.5 * SIDE, 0.5 * SIDE, -0.5 * FLOOR_THICKNESS)
+    marker.pose.position = Point(0.5 * FLOOR_SIDE, 0.5 * FLOOR_SIDE, -0.5 * FLOOR_THICKNESS)
     return marker
 
 
-def _body(number, place):
+def _body(number, pose):
     marker = _marker("turtles", number, Marker.CYLINDER, BODY_COLOR)
     marker.scale.x = marker.scale.y = 2.0 * RADIUS
     marker.scale.z = HEIGHT
-    marker.pose.position = Point(place.x, place.y, 0.5 * HEIGHT)
+    marker.pose.position = Point(pose.x, pose.y, 0.5 * HEIGHT)
     return marker
 
 
-def _nose(number, place):
+def _heading_arrow(number, pose):
     marker = _marker("noses", number, Marker.ARROW, (255, 255, 255))
     marker.scale.x, marker.scale.y, marker.scale.z = 2.0 * RADIUS, 0.05, 0.05
-    marker.pose.position = Point(place.x, place.y, HEIGHT)
-    marker.pose.orientation = Quaternion(0.0, 0.0, math.sin(0.5 * place.theta), math.cos(0.5 * place.theta))
+    marker.pose.position = Point(pose.x, pose.y, HEIGHT)
+    marker.pose.orientation = Quaternion(0.0, 0.0, math.sin(0.5 * pose.theta), math.cos(0.5 * pose.theta))
     return marker
 
 

@@ -17,13 +17,13 @@ from planar import FileWriteError, PlanarError, write_atomically
 from planar_ros.node.shell import run
 from turtle_world.canvas import BACKGROUND, Color
 from turtle_world.physics import PERIOD
-from turtle_world.ros.markers import Markers
+from turtle_world.ros.markers import TurtleMarkers
 from turtle_world.ros.turtle_topics import TurtleTopics
 from turtle_world.world import TurtleWorld
 
 BACKGROUND_PARAMETERS = ("~background_r", "~background_g", "~background_b")
 # A node that comes late, because others had the processor, makes up for so much, seconds.
-LARGEST_DELAY = 0.5
+MAX_DELAY = 0.5
 # How often the picture is written, and the markers are shown, seconds.
 PICTURE_PERIOD, MARKERS_PERIOD = 1.0, 0.1
 
@@ -42,8 +42,8 @@ class TurtleWorldNode:
         self._world.canvas.clear(_background())
         self._write_picture()
         self._topics: Dict[str, TurtleTopics] = {}
-        self._markers = Markers()
-        self._serve_turtles()
+        self._markers = TurtleMarkers()
+        self._update_turtle_topics()
         rospy.Service("clear", Empty, self._on_clear)
         rospy.Service("reset", Empty, self._on_reset)
         rospy.Service("spawn", Spawn, self._on_spawn)
@@ -53,32 +53,32 @@ class TurtleWorldNode:
 
     def _work(self):
         due = time.monotonic()
-        picture_due = markers_due = due
+        image_due = markers_due = due
         while not rospy.is_shutdown():
-            due = max(due + PERIOD, time.monotonic() - LARGEST_DELAY)
+            due = max(due + PERIOD, time.monotonic() - MAX_DELAY)
             time.sleep(max(0.0, due - time.monotonic()))
             with self._lock:
                 for name, state in self._world.step().items():
                     self._topics[name].publish(state)
                 if due >= markers_due:
                     markers_due = due + MARKERS_PERIOD
-                    self._markers.show(self._world)
-            if due >= picture_due:
-                picture_due = due + PICTURE_PERIOD
+                    self._markers.publish(self._world)
+            if due >= image_due:
+                image_due = due + PICTURE_PERIOD
                 try:
                     self._write_picture()
                 except FileWriteError as error:
                     rospy.logerr_throttle(60.0, f"no picture: {error}")
 
-    def _serve_turtles(self):
+    def _update_turtle_topics(self):
         """Gives each turtle its topics and services, and takes away those of turtles that are gone."""
         for name in set(self._topics) - set(self._world.names):
             self._topics.pop(name).close()
         for name in self._world.names:
             if name not in self._topics:
                 self._topics[name] = TurtleTopics(name, self._world, self._lock)
-                place = self._world.place_of(name)
-                rospy.loginfo("Spawning turtle [%s] at x=[%f], y=[%f], theta=[%f]", name, *place)
+                pose = self._world.pose_of(name)
+                rospy.loginfo("Spawning turtle [%s] at x=[%f], y=[%f], theta=[%f]", name, *pose)
 
     def _on_clear(self, request):
         rospy.loginfo("Clearing turtlesim.")
@@ -90,7 +90,7 @@ class TurtleWorldNode:
         rospy.loginfo("Resetting turtlesim.")
         with self._lock:
             self._world.reset(_background())
-            self._serve_turtles()
+            self._update_turtle_topics()
         return EmptyResponse()
 
     def _on_spawn(self, request):
@@ -100,7 +100,7 @@ class TurtleWorldNode:
             except PlanarError as error:
                 rospy.logerr("%s", error)
                 return None  # a failed call, as in turtlesim
-            self._serve_turtles()
+            self._update_turtle_topics()
         return SpawnResponse(name)
 
     def _on_kill(self, request):
@@ -109,7 +109,7 @@ class TurtleWorldNode:
                 rospy.logerr("Tried to kill turtle [%s], which does not exist", request.name)
                 return None
             self._world.kill(request.name)
-            self._serve_turtles()
+            self._update_turtle_topics()
         return KillResponse()
 
     def _write_picture(self):

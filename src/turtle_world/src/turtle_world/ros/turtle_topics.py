@@ -16,7 +16,7 @@ from turtlesim.srv import (
 
 from planar_ros.messages.border import advertise_service, subscribe
 from turtle_world.canvas import Pen
-from turtle_world.world import Command, TurtleState, TurtleWorld
+from turtle_world.world import TurtleState, TurtleVelocity, TurtleWorld
 
 WARNING_SECONDS = 1.0
 
@@ -36,12 +36,12 @@ class TurtleTopics:
         ]
 
     def publish(self, state: TurtleState) -> None:
-        self._pose.publish(*state.place, state.speed, state.turn)
+        self._pose.publish(*state.pose, state.speed, state.turn)
         self._color.publish(*state.color)
-        if state.stopped_at is not None:
+        if state.blocked_target is not None:
             rospy.logwarn_throttle(
                 WARNING_SECONDS,
-                "Oh no! I hit the wall! (Clamping from [x={:f}, y={:f}])".format(*state.stopped_at),
+                "Oh no! I hit the wall! (Clamping from [x={:f}, y={:f}])".format(*state.blocked_target),
             )
 
     def close(self) -> None:
@@ -52,7 +52,7 @@ class TurtleTopics:
             service.shutdown("the turtle is no more")
 
     def _on_command(self, message):
-        command = Command(message.linear.x, message.linear.y, message.angular.z)
+        command = TurtleVelocity(message.linear.x, message.linear.y, message.angular.z)
         with self._lock:
             self._world.command(self._name, command)
 

@@ -33,6 +33,6 @@ def set_model_configuration_client(
 def _call(service, kind, request):
     rospy.wait_for_service(service, SERVICE_SECONDS)
     response = rospy.ServiceProxy(service, kind)(*request)
-    tell = rospy.loginfo if response.success else rospy.logerr
-    tell("%s", response.status_message)
+    log = rospy.loginfo if response.success else rospy.logerr
+    log("%s", response.status_message)
     return response.success

@@ -7,7 +7,7 @@ import rosgraph
 import rospy
 from nav_msgs.msg import OccupancyGrid as OccupancyGridMsg
 
-from multirobot_map_merge.merging import merged
+from multirobot_map_merge.map_merging import merge_maps
 from planar import OccupancyGrid, PlanarError, Pose2
 from planar_ros.messages.conversion import frame_name, grid_from_msg, grid_to_msg
 from planar_ros.messages.transforms import Transforms
@@ -39,10 +39,10 @@ class MapMerge:
             is_map = kind == OccupancyGridMsg._type and name == self._map_topic and topic != self._topic
             if is_map and self._namespace in robot and topic not in self._subscribers:
                 rospy.loginfo("adding the map of %s", robot or "/")
-                callback = lambda message, robot=robot: self._see(robot, message)  # noqa: E731
+                callback = lambda message, robot=robot: self._on_map(robot, message)  # noqa: E731
                 self._subscribers[topic] = rospy.Subscriber(topic, OccupancyGridMsg, callback, queue_size=1)
 
-    def _see(self, robot: str, message: OccupancyGridMsg) -> None:
+    def _on_map(self, robot: str, message: OccupancyGridMsg) -> None:
         with self._lock:
             self._maps[robot] = (frame_name(message.header.frame_id), grid_from_msg(message))
 
@@ -52,20 +52,20 @@ class MapMerge:
         if not maps:
             return
         placed: List[Tuple[Pose2, OccupancyGrid]] = [
-            (self._place_of(robot, frame), grid) for robot, (frame, grid) in sorted(maps.items())
+            (self._map_frame_in_world(robot, frame), grid) for robot, (frame, grid) in sorted(maps.items())
         ]
         try:
-            grid = merged(placed)
+            grid = merge_maps(placed)
         except PlanarError as error:
             rospy.logwarn_throttle(10.0, "not merged: %s", error)
             return
         self._publisher.publish(grid_to_msg(grid, rospy.Time.now(), self._frame))
 
-    def _place_of(self, robot: str, frame: str) -> Pose2:
+    def _map_frame_in_world(self, robot: str, frame: str) -> Pose2:
         """Where a map's frame lies in the world: as tf has it, else as the robot's parameters say."""
-        place = self._transforms.lookup(self._frame, frame)
-        if place is not None:
-            return place
+        frame_in_world = self._transforms.lookup(self._frame, frame)
+        if frame_in_world is not None:
+            return frame_in_world
         names = (f"{robot}/map_merge/init_pose_{name}" for name in ("x", "y", "yaw"))
         return Pose2(*(float(rospy.get_param(name, 0.0)) for name in names))
 

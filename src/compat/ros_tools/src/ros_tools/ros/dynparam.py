@@ -10,7 +10,7 @@ import rospy
 
 TOOL = "/usr/lib/dynamic_reconfigure/dynparam"
 TIMEOUT = 5.0  # s
-TO_A_SERVER = ("dump", "get", "load", "set", "set_from_parameters")
+SERVER_COMMANDS = ("dump", "get", "load", "set", "set_from_parameters")
 
 
 def main() -> None:
@@ -28,6 +28,6 @@ def main() -> None:
 def with_timeout(argv: List[str]) -> List[str]:
     """The command line with a time limit, unless it has one or speaks to no server."""
     has_limit = any(argument.startswith(("-t", "--timeout")) for argument in argv)
-    if has_limit or len(argv) < 2 or argv[1] not in TO_A_SERVER:
+    if has_limit or len(argv) < 2 or argv[1] not in SERVER_COMMANDS:
         return argv
     return [*argv[:2], f"--timeout={TIMEOUT}", *argv[2:]]

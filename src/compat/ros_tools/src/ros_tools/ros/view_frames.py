@@ -11,7 +11,7 @@ import rospy
 import tf
 from tf.srv import FrameGraph
 
-LISTENING = 5.0  # s, as tf's
+LISTEN_SECONDS = 5.0  # s, as tf's
 
 
 def main() -> None:
@@ -21,7 +21,7 @@ def main() -> None:
     options = parser.parse_args(rospy.myargv()[1:])
     rospy.init_node("view_frames", anonymous=True)
     try:
-        graph = _graph_of(options.node) if options.node else _graph_heard()
+        graph = _graph_of(options.node) if options.node else _graph_of_tf()
     except (rospy.ROSException, rospy.ServiceException) as error:
         sys.exit(f"error: {options.node} tells no frames: {error}")
     Path("frames.gv").write_text(graph)
@@ -31,11 +31,11 @@ def main() -> None:
     print("frames.pdf generated")
 
 
-def _graph_heard() -> str:
+def _graph_of_tf() -> str:
     """In graphviz' language."""
-    print(f"Listening to /tf for {LISTENING} seconds")
+    print(f"Listening to /tf for {LISTEN_SECONDS} seconds")
     listener = tf.TransformListener()
-    time.sleep(LISTENING)
+    time.sleep(LISTEN_SECONDS)
     print("Done Listening")
     return str(listener.allFramesAsDot(rospy.Time.now()))
 
@@ -43,5 +43,5 @@ def _graph_heard() -> str:
 def _graph_of(node: str) -> str:
     service = f"{node}/tf_frames"
     print(f"Waiting for service {service}")
-    rospy.wait_for_service(service, timeout=LISTENING)
+    rospy.wait_for_service(service, timeout=LISTEN_SECONDS)
     return str(rospy.ServiceProxy(service, FrameGraph)().dot_graph)

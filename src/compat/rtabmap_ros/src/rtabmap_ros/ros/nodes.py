@@ -6,9 +6,9 @@ import sys
 import rosgraph
 import rospy
 
-from rtabmap_ros.arguments import as_slam_lite
+from rtabmap_ros.arguments import slam_lite_arguments
 
-IN_ITS_PLACE = (
+RTABMAPVIZ_NOTICE = (
     "rtabmap is not here: slam_lite makes a 2D map of the laser's scans in its place, without pictures, "
     "points or a database"
 )
@@ -19,8 +19,8 @@ def rtabmap() -> None:
     """Becomes slam_lite."""
     from slam_lite.ros.node import main as make_map
 
-    print(IN_ITS_PLACE, file=sys.stderr)
-    sys.argv[1:] = as_slam_lite(sys.argv[1:], _parameter)
+    print(RTABMAPVIZ_NOTICE, file=sys.stderr)
+    sys.argv[1:] = slam_lite_arguments(sys.argv[1:], _parameter)
     rospy.names.reload_mappings(sys.argv)  # rospy has read them when it was imported
     make_map()
 

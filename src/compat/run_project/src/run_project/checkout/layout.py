@@ -2,23 +2,30 @@
 
 import enum
 import os
+import re
 import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Dict, Iterator, List, Mapping, Optional, Tuple
 
-from run_project.checkout.lent import files_of, lendable
-from run_project.errors import ProjectError
-from run_project.stand_ins.folders import PACKAGE_FOLDER
+from planar import PlanarError
+from run_project.checkout.substitutes import find_substitutes, substitute_files
+from run_project.stand_ins import PACKAGE_FOLDER
 
 # What a build or a version control leaves in a checkout; never read, never copied.
-LEFTOVERS = frozenset((".git", ".hg", ".svn", "build", "devel", "install", "logs"))
+BUILD_AND_VCS_FOLDERS = frozenset((".git", ".hg", ".svn", "build", "devel", "install", "logs"))
 SCRIPTS = (".sh", ".bash")
-WORD = "home_service"
+HOME_SERVICE = "home_service"
 LFS_POINTER = b"version https://git-lfs"
+_MAP_IMAGE = re.compile(r"^image:\s*[\"']?([^\s\"']+)", re.MULTILINE)
+_MAP_RESOLUTION = re.compile(r"^resolution:", re.MULTILINE)
 
 
-class Kind(enum.Enum):
+class ProjectError(PlanarError):
+    """The given path is not a project that can be run; the text states why."""
+
+
+class CheckoutKind(enum.Enum):
     """What the top folder of a checkout is."""
 
     WORKSPACE = "a workspace"
@@ -36,11 +43,11 @@ class Checkout:
     """
 
     root: Path
-    kind: Kind
+    kind: CheckoutKind
     workspace: Optional[Path]
     packages: Dict[str, Path]
     files: Tuple[str, ...]
-    lent: Mapping[Path, Path] = field(default_factory=dict)
+    substitutes: Mapping[Path, Path] = field(default_factory=dict)
 
     def scripts(self) -> List[Path]:
         """All shell scripts."""
@@ -49,11 +56,25 @@ class Checkout:
     def programs(self) -> List[Path]:
         """All shell scripts, and what else names its interpreter."""
         others = (file for file in self.files if Path(file).suffix in ("", ".py"))
-        return self.scripts() + [Path(file) for file in others if _begins(self.root / file, b"#!")]
+        return self.scripts() + [Path(file) for file in others if _starts_with(self.root / file, b"#!")]
 
     def lfs_pointers(self) -> List[str]:
         """Files that were not fetched: what Git LFS puts in their place says where they are."""
-        return [file for file in self.files if _begins(self.root / file, LFS_POINTER)]
+        return [file for file in self.files if _starts_with(self.root / file, LFS_POINTER)]
+
+    def maps_without_image(self) -> List[str]:
+        """Map files whose image is not in the checkout, with its name: map_server refuses them."""
+        names = {Path(file).name for file in self.files}
+        found = []
+        for file in self.files:
+            path = self.root / file
+            if path.suffix not in (".yaml", ".yml") or not path.is_file():
+                continue
+            text = path.read_text(errors="replace")
+            image = _MAP_IMAGE.search(text)
+            if image and _MAP_RESOLUTION.search(text) and Path(image.group(1)).name not in names:
+                found.append(f"{file} ({image.group(1)})")
+        return found
 
     def model_folders(self) -> List[Path]:
         """All folders in which Gazebo's models lie, those that worlds name as ``model://name``."""
@@ -68,19 +89,19 @@ def read_checkout(root: Path) -> Checkout:
         raise ProjectError(f"{root}: no such folder")
     own = tuple(_files(root))
     scripts = ((root / file).read_text(errors="replace") for file in own if file.endswith(SCRIPTS))
-    lent = lendable(root, scripts, PACKAGE_FOLDER.parent)
-    files = (*own, *files_of(lent))
+    substitutes = find_substitutes(root, scripts, PACKAGE_FOLDER.parent)
+    files = (*own, *substitute_files(substitutes))
     packages = _packages(root, own)
     if not packages:
         hint = " (it has git submodules: have they been fetched?)" if ".gitmodules" in files else ""
         raise ProjectError(f"{root}: no package.xml in it or below{hint}")
     workspace = None
     if Path() in packages.values():
-        kind = Kind.PACKAGE
+        kind = CheckoutKind.PACKAGE
     else:
         workspace = _workspace(packages)
-        kind = Kind.SOURCES if workspace is None else Kind.WORKSPACE
-    return Checkout(root, kind, workspace, packages, files, lent)
+        kind = CheckoutKind.SOURCES if workspace is None else CheckoutKind.WORKSPACE
+    return Checkout(root, kind, workspace, packages, files, substitutes)
 
 
 def choose_script(checkout: Checkout, wanted: Optional[str]) -> Path:
@@ -90,8 +111,8 @@ def choose_script(checkout: Checkout, wanted: Optional[str]) -> Path:
     """
     scripts = checkout.scripts()
     if wanted is None:
-        chosen = [script for script in scripts if script.stem == WORD] or [
-            script for script in scripts if is_errand(str(script))
+        chosen = [script for script in scripts if script.stem == HOME_SERVICE] or [
+            script for script in scripts if is_home_service_script(str(script))
         ]
     else:
         chosen = [Path(file) for file in checkout.files if file == os.path.normpath(wanted)] or [
@@ -101,29 +122,30 @@ def choose_script(checkout: Checkout, wanted: Optional[str]) -> Path:
         return min(chosen, key=lambda script: (len(script.parts), str(script)))
     names = ", ".join(str(script) for script in scripts) or "none"
     raise ProjectError(
-        f"{checkout.root}: no script {wanted or WORD + '.sh'} in it; name another of its scripts: {names}"
+        f"{checkout.root}: no script {wanted or HOME_SERVICE + '.sh'} in it; "
+        f"name another of its scripts: {names}"
     )
 
 
-def is_errand(script: str) -> bool:
+def is_home_service_script(script: str) -> bool:
     """Whether a script drives the robot, by its name; others may just show a marker."""
-    return _letters(WORD) in _letters(Path(script).stem)
+    return _letters_only(HOME_SERVICE) in _letters_only(Path(script).stem)
 
 
-def _begins(path: Path, content: bytes) -> bool:
+def _starts_with(path: Path, content: bytes) -> bool:
     if not path.is_file():
         return False
     with path.open("rb") as file:
         return file.read(len(content)) == content
 
 
-def _letters(text: str) -> str:
+def _letters_only(text: str) -> str:
     return "".join(letter for letter in text.lower() if letter.isalpha())
 
 
 def _files(root: Path) -> Iterator[str]:
     for folder, folders, names in os.walk(root):
-        folders[:] = sorted(name for name in folders if name not in LEFTOVERS)
+        folders[:] = sorted(name for name in folders if name not in BUILD_AND_VCS_FOLDERS)
         for name in sorted(names):
             yield os.path.relpath(f"{folder}/{name}", root)
 

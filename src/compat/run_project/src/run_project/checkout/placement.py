@@ -11,11 +11,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Dict, FrozenSet, Iterable, Iterator, List, Mapping, Optional, Pattern, Set, Tuple
 
-from run_project.checkout.layout import Checkout, Kind
+from run_project.checkout.layout import Checkout, CheckoutKind
 
 # Where the system's own files are, and what is rather the tail of a path: nothing is put there.
-SYSTEM = frozenset("bin boot dev etc lib lib64 opt proc run sbin src sys usr var".split())
-SETUPS = ("devel/setup.bash", "devel/setup.sh", "devel/setup.zsh", "build", "install/setup.bash")
+SYSTEM_FOLDERS = frozenset("bin boot dev etc lib lib64 opt proc run sbin src sys usr var".split())
+BUILD_PRODUCTS = ("devel/setup.bash", "devel/setup.sh", "devel/setup.zsh", "build", "install/setup.bash")
 READ_SUFFIXES = frozenset(
     ".bash .cpp .h .launch .py .rviz .sdf .sh .urdf .world .xacro .xml .yaml .yml".split()
 )
@@ -23,7 +23,7 @@ READ_SUFFIXES = frozenset(
 # Stands for the folder in which the workspace is made, while paths are tried.
 ROOT = "/@"
 # Deeper in it than any script climbs.
-DEEP = ROOT + "/_" * 20
+DEEP_FOLDER = ROOT + "/_" * 20
 
 _NAME = r"[\w@%+.-]+"
 _ABSOLUTE = re.compile(rf"(?<![\w}})~.:/-])((?:/{_NAME})+)")
@@ -56,118 +56,124 @@ class Placement:
     links: Dict[Path, Path] = field(default_factory=dict)
 
 
-def place(checkout: Checkout, script: str, texts: Mapping[str, str], home: str, user: str) -> Placement:
+def best_placement(
+    checkout: Checkout, script: str, texts: Mapping[str, str], home: str, user: str
+) -> Placement:
     """The best placement for running ``script``; ``texts`` are the contents of the files by relative path."""
-    named = _named_outside(checkout, script, texts, home, user)
-    files = _with_folders(checkout.files)
-    prefixes = sorted({prefix for prefix in (_prefix(path, files) for path in named) if prefix is not None})
+    named = _external_paths(checkout, script, texts, home, user)
+    files = _with_parent_folders(checkout.files)
+    prefixes = sorted(
+        {prefix for prefix in (_checkout_prefix(path, files) for path in named) if prefix is not None}
+    )
     best: Optional[Tuple[Tuple[int, int], Placement]] = None
-    for at, workspace in _positions(checkout, [prefix for prefix, _ in prefixes]):
+    for at, workspace in _candidate_positions(checkout, [prefix for prefix, _ in prefixes]):
         mounts = dict(_mounts(prefixes, at, workspace))
-        there = _there(checkout, at, workspace)
-        packages = {name: _tried(at / folder) for name, folder in checkout.packages.items()}
-        for start in _starts(at, workspace, Path(script).parent):
-            text = at_home(texts[script], home, user)
-            found = set(paths_named(text, _tried(start), _tried(at / Path(script).parent), packages))
-            found |= {_tried(mounts_to(path, mounts)) for path in {*found, *absolute_paths(text, home, user)}}
+        there = _existing_paths(checkout, at, workspace)
+        packages = {name: _in_root(at / folder) for name, folder in checkout.packages.items()}
+        for start in _candidate_start_folders(at, workspace, Path(script).parent):
+            text = expand_home(texts[script], home, user)
+            found = set(referenced_paths(text, _in_root(start), _in_root(at / Path(script).parent), packages))
+            found |= {
+                _in_root(resolve_mount(path, mounts)) for path in {*found, *absolute_paths(text, home, user)}
+            }
             score = len(found & there), sum(source == workspace for source in mounts.values())
             if best is None or score > best[0]:
                 best = score, Placement(at, workspace, start, mounts)
     assert best is not None
     placement = best[1]
-    _find_strays(checkout, texts, placement, home, user)
+    _add_moved_files(checkout, texts, placement, home, user)
     return placement
 
 
-def _named_outside(
+def _external_paths(
     checkout: Checkout, script: str, texts: Mapping[str, str], home: str, user: str
 ) -> List[str]:
     """Absolute paths that any file names, or the script by going to a folder and naming a file from there."""
-    packages = {name: _tried(folder) for name, folder in checkout.packages.items()}
-    text = at_home(texts[script], home, user)
-    gone_to = paths_named(text, DEEP, f"{DEEP}/{Path(script).parent}", packages)
-    named = {path for path in gone_to if not path.startswith(f"{ROOT}/") and _may_be_the_projects(path)}
+    packages = {name: _in_root(folder) for name, folder in checkout.packages.items()}
+    text = expand_home(texts[script], home, user)
+    gone_to = referenced_paths(text, DEEP_FOLDER, f"{DEEP_FOLDER}/{Path(script).parent}", packages)
+    named = {path for path in gone_to if not path.startswith(f"{ROOT}/") and _may_be_project_path(path)}
     return sorted(named.union(*(absolute_paths(text, home, user) for text in texts.values())))
 
 
-def _find_strays(
+def _add_moved_files(
     checkout: Checkout, texts: Mapping[str, str], placement: Placement, home: str, user: str
 ) -> None:
     """Adds files named where they once were: they lie beside those that name them, or once elsewhere."""
-    there = _there(checkout, placement.checkout, placement.workspace)
+    there = _existing_paths(checkout, placement.checkout, placement.workspace)
     folders = dict(placement.mounts)
     for file, text in sorted(texts.items()):
         for path in sorted(absolute_paths(text, home, user)):
-            place_named = mounts_to(path, folders)
+            resolved = resolve_mount(path, folders)
             namesakes = [other for other in checkout.files if Path(other).name == Path(path).name]
             beside = [other for other in namesakes if Path(other).parent == Path(file).parent]
             found = beside or namesakes
-            if len(found) != 1 or (place_named is not None and _tried(place_named) in there):
+            if len(found) != 1 or (resolved is not None and _in_root(resolved) in there):
                 continue
-            if place_named is None:
+            if resolved is None:
                 placement.mounts[path] = placement.checkout / found[0]
             else:
-                placement.links[place_named] = placement.checkout / found[0]
+                placement.links[resolved] = placement.checkout / found[0]
 
 
 def absolute_paths(text: str, home: str, user: str) -> Set[str]:
     """Absolute paths of files that may be the project's: not the system's, not the names of topics."""
-    at = at_home(text.replace("file://", ""), home, user)
+    at = expand_home(text.replace("file://", ""), home, user)
     paths = (match.group(1).rstrip(".") for match in _ABSOLUTE.finditer(at))
-    return {os.path.normpath(path) for path in paths if _may_be_the_projects(path)}
+    return {os.path.normpath(path) for path in paths if _may_be_project_path(path)}
 
 
-def at_home(text: str, home: str, user: str) -> str:
+def expand_home(text: str, home: str, user: str) -> str:
     """The text with the home folder and the user's name put in where a shell would."""
     text = _HOME.sub(lambda _: home, text)
     return text.replace("${USER}", user).replace("$USER", user)
 
 
-def _may_be_the_projects(path: str) -> bool:
+def _may_be_project_path(path: str) -> bool:
     parts = path.split("/")[1:]
     is_file = "." in parts[-1] or "src" in parts or "devel" in parts
-    return len(parts) >= 3 and parts[0] not in SYSTEM and is_file and not path.startswith("/opt/ros")
+    return len(parts) >= 3 and parts[0] not in SYSTEM_FOLDERS and is_file and not path.startswith("/opt/ros")
 
 
-def paths_named(text: str, start: str, script_folder: str, packages: Mapping[str, str]) -> Iterator[str]:
+def referenced_paths(text: str, start: str, script_folder: str, packages: Mapping[str, str]) -> Iterator[str]:
     """The paths that a shell script names or goes to, resolved as if it was started in the folder ``start``.
 
     Not a shell: knows ``cd``, assignments, ``$(pwd)``, the script's own folder and ``rospack find``.
     All folders, also those of the packages, are given absolute.
     """
-    text = _QUOTED_PIECE.sub(r"\2", _replaced(_SCRIPT_FOLDER, script_folder, text))
-    text = _CD_PWD.sub(lambda match: _joined(start, match.group(1)), text)
+    text = _QUOTED_PIECE.sub(r"\2", _substituted(_SCRIPT_FOLDER, script_folder, text))
+    text = _CD_PWD.sub(lambda match: _resolved(start, match.group(1)), text)
     text = _ROSPACK.sub(lambda match: packages.get(match.group(1) or match.group(2), "?"), text)
-    folder, values = start, Values()
+    folder, values = start, ShellVariables()
     for line in text.splitlines():
-        line = values.put_into(_replaced(_WORKING_FOLDER, folder, line.split("#", 1)[0]))
+        line = values.substitute(_substituted(_WORKING_FOLDER, folder, line.split("#", 1)[0]))
         here, at = folder, 0
         for change in _CD.finditer(line):
             yield from _paths_in(line[at : change.start()], here)
-            here, at = _joined(here, change.group(1)), change.end()
+            here, at = _resolved(here, change.group(1)), change.end()
             yield here
         yield from _paths_in(line[at:], here)
         if line.lstrip().startswith("cd "):
             folder = here
 
 
-class Values:
+class ShellVariables:
     """The variables that a script has assigned so far."""
 
     def __init__(self):
         self._values: Dict[str, str] = {}
 
-    def put_into(self, line: str) -> str:
+    def substitute(self, line: str) -> str:
         """The line with the variables replaced; what it assigns itself is known from then on."""
         for name, value in self._values.items():
-            line = _replaced(re.compile(rf"\$(?:{name}\b|\{{{name}\}})"), value, line)
+            line = _substituted(re.compile(rf"\$(?:{name}\b|\{{{name}\}})"), value, line)
         assigned = _ASSIGNMENT.match(line)
         if assigned:
             self._values[assigned.group(1)] = assigned.group(2).strip("\"'")
         return line
 
 
-def mounts_to(path: str, mounts: Mapping[str, Path]) -> Optional[Path]:
+def resolve_mount(path: str, mounts: Mapping[str, Path]) -> Optional[Path]:
     """Where an absolute path is found once the mounts are made; None if under none of them."""
     for target, source in mounts.items():
         if path == target or path.startswith(target + "/"):
@@ -175,15 +181,15 @@ def mounts_to(path: str, mounts: Mapping[str, Path]) -> Optional[Path]:
     return None
 
 
-def _tried(path: Optional[Path]) -> str:
+def _in_root(path: Optional[Path]) -> str:
     return os.path.normpath(f"{ROOT}/{path}")
 
 
-def _replaced(pattern: Pattern[str], value: str, text: str) -> str:
+def _substituted(pattern: Pattern[str], value: str, text: str) -> str:
     return pattern.sub(lambda _: value, text)
 
 
-def _joined(folder: str, path: str) -> str:
+def _resolved(folder: str, path: str) -> str:
     return os.path.normpath(path if path.startswith("/") else f"{folder}/{path}")
 
 
@@ -191,10 +197,10 @@ def _paths_in(text: str, folder: str) -> Iterator[str]:
     for word in _PATH.findall(text):
         word = word.rpartition(":=")[2]
         if "$" not in word and "://" not in word:
-            yield _joined(folder, word)
+            yield _resolved(folder, word)
 
 
-def _prefix(path: str, files: FrozenSet[str]) -> Optional[Tuple[str, bool]]:
+def _checkout_prefix(path: str, files: FrozenSet[str]) -> Optional[Tuple[str, bool]]:
     """The folder that stands for the checkout (True) or its workspace (False), by the path's longest tail."""
     parts = path.split("/")
     for at in range(2, len(parts)):
@@ -206,14 +212,14 @@ def _prefix(path: str, files: FrozenSet[str]) -> Optional[Tuple[str, bool]]:
     return None
 
 
-def _positions(checkout: Checkout, prefixes: Iterable[str]) -> List[Tuple[Path, Path]]:
+def _candidate_positions(checkout: Checkout, prefixes: Iterable[str]) -> List[Tuple[Path, Path]]:
     """Where checkout and workspace may lie: pairs relative to the folder in which they are made."""
-    if checkout.kind is Kind.WORKSPACE:
+    if checkout.kind is CheckoutKind.WORKSPACE:
         assert checkout.workspace is not None
         return [(Path(), Path(checkout.workspace))]
     names = {Path(prefix).name for prefix in prefixes if Path(prefix).parent.name == "src"}
     inside = [(Path("src") / name, Path()) for name in sorted(names | {checkout.root.name})]
-    return inside if checkout.kind is Kind.PACKAGE else [(Path("src"), Path()), *inside]
+    return inside if checkout.kind is CheckoutKind.PACKAGE else [(Path("src"), Path()), *inside]
 
 
 def _mounts(prefixes: List[Tuple[str, bool]], at: Path, workspace: Path) -> Iterator[Tuple[str, Path]]:
@@ -226,14 +232,14 @@ def _mounts(prefixes: List[Tuple[str, bool]], at: Path, workspace: Path) -> Iter
             yield prefix, at
 
 
-def _starts(at: Path, workspace: Path, script_folder: Path) -> List[Path]:
+def _candidate_start_folders(at: Path, workspace: Path, script_folder: Path) -> List[Path]:
     """Where people stand when they start a script; the likeliest first."""
     return list(
         dict.fromkeys([workspace, at / script_folder, at, workspace / "src", at / script_folder.parent])
     )
 
 
-def _with_folders(files: Iterable[str]) -> FrozenSet[str]:
+def _with_parent_folders(files: Iterable[str]) -> FrozenSet[str]:
     return frozenset(
         part
         for file in files
@@ -242,7 +248,7 @@ def _with_folders(files: Iterable[str]) -> FrozenSet[str]:
     )
 
 
-def _there(checkout: Checkout, at: Path, workspace: Path) -> FrozenSet[str]:
-    made = [str(workspace / name) for name in SETUPS]
-    files = _with_folders([*(str(at / file) for file in checkout.files), *made])
-    return frozenset(map(_tried, map(Path, files)))
+def _existing_paths(checkout: Checkout, at: Path, workspace: Path) -> FrozenSet[str]:
+    made = [str(workspace / name) for name in BUILD_PRODUCTS]
+    files = _with_parent_folders([*(str(at / file) for file in checkout.files), *made])
+    return frozenset(map(_in_root, map(Path, files)))

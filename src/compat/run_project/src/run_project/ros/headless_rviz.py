@@ -7,16 +7,16 @@ from typing import List, Optional
 
 import rospy
 
-from run_project.stand_ins.folders import without_stand_ins
-from run_project.stand_ins.rviz_topics import topics_of
+from run_project.stand_ins import without_stand_ins
+from run_project.stand_ins.rviz_topics import displayed_topics
 
-SHOWN = "RUN_PROJECT_RVIZ"
+RVIZ_VARIABLE = "RUN_PROJECT_RVIZ"
 OPTIONS = ("-d", "--display-config")
 
 
 def main() -> None:
     """Becomes the real rviz if there is one to be shown."""
-    if os.environ.get(SHOWN):
+    if os.environ.get(RVIZ_VARIABLE):
         os.execvpe("rviz", ["rviz", *sys.argv[1:]], without_stand_ins(os.environ))
     rospy.init_node("rviz", anonymous=True)
     config = config_file(rospy.myargv()[1:])
@@ -26,9 +26,9 @@ def main() -> None:
             text = config.read_text(errors="replace")
         except OSError as error:
             print(f"[rviz] {config}: {error.strerror}; showing rviz' default", file=sys.stderr)
-    for topic in sorted(topics_of(text)):
+    for topic in sorted(displayed_topics(text)):
         print(f"[rviz] displays {topic}", flush=True)
-        rospy.Subscriber(topic, rospy.AnyMsg, _look_away, queue_size=1, buff_size=1 << 20)
+        rospy.Subscriber(topic, rospy.AnyMsg, _ignore, queue_size=1, buff_size=1 << 20)
     rospy.spin()
 
 
@@ -41,5 +41,5 @@ def config_file(arguments: List[str]) -> Optional[Path]:
     return Path(arguments[0]) if arguments and arguments[0].endswith(".rviz") else None
 
 
-def _look_away(_message) -> None:
+def _ignore(_message) -> None:
     pass

@@ -8,31 +8,31 @@ from typing import List
 import psutil
 
 # A process that has taken so much of a core for so many seconds spins; how nice it has to be then.
-SPINNING_SHARE, SPINNING_SECONDS, SPINNING_NICENESS = 0.3, 5.0, 15
+BUSY_CPU_SHARE, BUSY_SECONDS, BUSY_NICENESS = 0.3, 5.0, 15
 SHELLS = ("", "bash", "sh", "dash", "zsh")
 
 
-def waits_for_keys(process: psutil.Process) -> bool:
+def waits_for_input(process: psutil.Process) -> bool:
     """Whether its first thread is in read(0, ...), which is 0 on x86-64 and 63 on ARM."""
     call = Path(f"/proc/{process.pid}/syscall").read_text().split()
     return call[:2] in (["0", "0x0"], ["63", "0x0"])
 
 
-def put_spinners_last(processes: List[psutil.Process]) -> None:
+def lower_priority_of_busy_processes(processes: List[psutil.Process]) -> None:
     """Some nodes never sleep: the core that they take must not be missing where the robot is simulated."""
     for process in processes:
         with contextlib.suppress(psutil.Error):
             times, age = process.cpu_times(), time.time() - process.create_time()
-            is_spinning = age > SPINNING_SECONDS and times.user + times.system > SPINNING_SHARE * age
-            if is_spinning and process.nice() < SPINNING_NICENESS:
-                process.nice(SPINNING_NICENESS)
-                _put_session_last(process)
+            is_spinning = age > BUSY_SECONDS and times.user + times.system > BUSY_CPU_SHARE * age
+            if is_spinning and process.nice() < BUSY_NICENESS:
+                process.nice(BUSY_NICENESS)
+                _lower_session_priority(process)
 
 
-def _put_session_last(process: psutil.Process) -> None:
+def _lower_session_priority(process: psutil.Process) -> None:
     """Linux may share out the cores by sessions, one a node; niceness counts only within a session."""
     with contextlib.suppress(OSError):
-        Path(f"/proc/{process.pid}/autogroup").write_text(f"{SPINNING_NICENESS}\n")
+        Path(f"/proc/{process.pid}/autogroup").write_text(f"{BUSY_NICENESS}\n")
 
 
 def program_of(command: List[str]) -> str:

@@ -1,1 +1,24 @@
-"""What stands in for the terminal emulator, rviz and nodelets of a real computer while a project runs."""
+"""Programs and packages that replace the terminal emulator, rviz and nodelet while a project runs.
+
+Their folders come first in PATH, ROS_PACKAGE_PATH and CMAKE_PREFIX_PATH.
+"""
+
+from pathlib import Path
+from typing import Dict, Mapping
+
+PACKAGE_FOLDER = Path(__file__).resolve().parents[3]
+STAND_INS = PACKAGE_FOLDER / "stand_ins"
+
+
+def without_stand_ins(environment: Mapping[str, str]) -> Dict[str, str]:
+    """The environment of a real program, in which each name means the real thing again.
+
+    rviz, for one, finds its plugins by the package of its name.
+    """
+    hidden = {str(STAND_INS), *(str(STAND_INS / part) for part in ("bin", "lib", "share"))}
+    return {
+        name: ":".join(entry for entry in value.split(":") if entry not in hidden)
+        if str(STAND_INS) in value
+        else value
+        for name, value in environment.items()
+    }

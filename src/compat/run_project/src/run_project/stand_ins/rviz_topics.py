@@ -6,11 +6,20 @@ import yaml
 
 # Pictures and clouds: heavy to make, and nobody looks at them without a window. Markers: the observer listens
 # to all of them, and must be the first: some nodes show a marker once, as soon as somebody listens.
-UNSEEN = ("Image", "Camera", "DepthCloud", "PointCloud2", "PointCloud", "RGBDImage", "Marker", "MarkerArray")
+EXCLUDED_DISPLAYS = (
+    "Image",
+    "Camera",
+    "DepthCloud",
+    "PointCloud2",
+    "PointCloud",
+    "RGBDImage",
+    "Marker",
+    "MarkerArray",
+)
 TOPIC_KEYS = ("Topic", "Marker Topic", "Update Topic")
 
 
-def topics_of(text: str) -> Set[str]:
+def displayed_topics(text: str) -> Set[str]:
     """The topics of all enabled displays in the text of a configuration, but for UNSEEN ones."""
     try:
         config = yaml.safe_load(text.replace("\t", "  "))
@@ -26,7 +35,7 @@ def _topics(displays) -> Iterator[str]:
         if not isinstance(display, dict) or not display.get("Enabled", True):
             continue
         yield from _topics(display.get("Displays"))
-        if str(display.get("Class", "")).rsplit("/", 1)[-1] in UNSEEN:
+        if str(display.get("Class", "")).rsplit("/", 1)[-1] in EXCLUDED_DISPLAYS:
             continue
         for key in TOPIC_KEYS:
             topic = display.get(key)

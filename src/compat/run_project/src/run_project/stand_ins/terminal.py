@@ -8,16 +8,16 @@ from typing import Iterator, List
 
 from run_project.stand_ins.windows import commands_of, returns_at_once, title_of
 
-LOGS = "RUN_PROJECT_LOGS"
+LOG_FOLDER_VARIABLE = "RUN_PROJECT_LOGS"
 # What is typed into windows: lines of WINDOW=TEXT.
-TYPED = "RUN_PROJECT_TYPED"
+INPUT_VARIABLE = "RUN_PROJECT_TYPED"
 # Logs that lie beside those of the windows.
 NOT_WINDOWS = ("build", "master", "record", "script")
 
 
 def main(terminal: str, arguments: List[str]) -> None:
     """Opens the windows that were asked for, and stays as long as the terminal would."""
-    folder = Path(os.environ[LOGS])
+    folder = Path(os.environ[LOG_FOLDER_VARIABLE])
     windows = [open_window(command, folder) for command in commands_of(terminal, arguments)]
     if not returns_at_once(terminal):
         with contextlib.suppress(KeyboardInterrupt):
@@ -43,7 +43,7 @@ def _keyboard(title: str) -> Iterator[int]:
     both = os.open(f"/proc/self/fd/{reading}", os.O_RDWR)  # who reads from this holds it open for writing
     os.close(reading)
     os.close(writing)
-    for line in os.environ.get(TYPED, "").splitlines():
+    for line in os.environ.get(INPUT_VARIABLE, "").splitlines():
         window, _, text = line.partition("=")
         if window in (title, title.partition("-")[2]):
             os.write(both, text.encode() + b"\n")

@@ -33,7 +33,7 @@ ALIASES = {
 # zsh, many an author's shell, puts the home there as well.
 _HOME_AS_VALUE = re.compile(r"(?<=:=)~(?=/)")
 # Commands of one argument that come before what a window is opened for.
-PREPARING = ("source", ".", "cd", "export", "sleep")
+PREPARATORY_COMMANDS = ("source", ".", "cd", "export", "sleep")
 
 
 def commands_of(terminal: str, arguments: List[str]) -> List[List[str]]:
@@ -47,7 +47,7 @@ def commands_of(terminal: str, arguments: List[str]) -> List[List[str]]:
     while rest:
         word = rest.pop(0)
         name, has_value, value = word.partition("=")
-        if _takes_rest(kind, name) and rest:
+        if _takes_remaining_words(kind, name) and rest:
             commands.append(_command(rest))
             break
         if name in ("-e", "--command"):
@@ -65,7 +65,7 @@ def title_of(command: List[str]) -> str:
             named = [Path(other).stem for other in words[at + 1 :] if ":=" not in other]
             return "-".join([word, *named[1:2]] if len(named) > 1 else [word, *named[:1]])
     at = 0
-    while words[at : at + 1] and words[at] in PREPARING:
+    while words[at : at + 1] and words[at] in PREPARATORY_COMMANDS:
         at += 2
     return Path(words[at]).name if at < len(words) else "window"
 
@@ -75,7 +75,7 @@ def returns_at_once(terminal: str) -> bool:
     return ALIASES.get(terminal, terminal) == "gnome-terminal"
 
 
-def _takes_rest(kind: str, option: str) -> bool:
+def _takes_remaining_words(kind: str, option: str) -> bool:
     if kind == "xterm":
         return option == "-e"
     return option in ("-x", "--execute", "--")

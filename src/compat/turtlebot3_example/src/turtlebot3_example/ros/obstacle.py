@@ -13,16 +13,16 @@ from planar_ros.node.shell import run
 SPEED, SAFE_DISTANCE = 0.22, 0.25
 
 
-class Obstacle:
+class ObstacleStop:
     """Answers each scan with a velocity."""
 
     def __init__(self) -> None:
         self._is_moving = True
         self._publisher = rospy.Publisher("cmd_vel", Twist, queue_size=1)
         publish_on_shutdown(self._publisher, Twist())
-        rospy.Subscriber("scan", LaserScan, self._see, queue_size=1)
+        rospy.Subscriber("scan", LaserScan, self._on_scan, queue_size=1)
 
-    def _see(self, scan: LaserScan) -> None:
+    def _on_scan(self, scan: LaserScan) -> None:
         ahead = scan.ranges[0] if scan.ranges else math.nan
         ahead = 0.0 if math.isnan(ahead) else min(ahead, scan.range_max)
         message = Twist()
@@ -38,4 +38,4 @@ class Obstacle:
 
 
 def main() -> None:
-    run("turtlebot3_obstacle", Obstacle)
+    run("turtlebot3_obstacle", ObstacleStop)

@@ -7,7 +7,7 @@ import rospy
 
 from planar_ros.node.shell import init_node
 from turtlebot3_example.msg import Turtlebot3Action, Turtlebot3Goal
-from turtlebot3_example.ros.typed import typed_lines
+from turtlebot3_example.ros.input_lines import read_lines
 
 MESSAGE = """
 patrol your TurtleBot3!
@@ -34,7 +34,7 @@ def main() -> None:
     client = actionlib.SimpleActionClient("turtlebot3", Turtlebot3Action)
     is_done = True
     print(MESSAGE, flush=True)
-    for line in typed_lines():
+    for line in read_lines():
         if line.strip() in ("", "x"):
             break
         try:

@@ -8,8 +8,8 @@ import rospy
 
 from planar import Pose2
 from planar_ros.node.shell import init_node
-from turtlebot3_example.ros.robot import Robot
-from turtlebot3_example.ros.typed import typed_lines
+from turtlebot3_example.ros.input_lines import read_lines
+from turtlebot3_example.ros.odometry_controller import OdometryController
 
 MESSAGE = """
 control your Turtlebot3!
@@ -29,15 +29,15 @@ def main() -> None:
     init_node("turtlebot3_pointop_key", disable_signals=False)
     try:
         with suppress(rospy.ROSInterruptException):
-            _go_where_is_typed(Robot())
+            _go_where_is_typed(OdometryController())
     except rospy.ROSException as error:
         print(error, file=sys.stderr)
         sys.exit(1)
 
 
-def _go_where_is_typed(robot: Robot) -> None:
+def _go_where_is_typed(controller: OdometryController) -> None:
     print(MESSAGE, flush=True)
-    for line in typed_lines():
+    for line in read_lines():
         if line.strip() in ("", "s"):
             break
         try:
@@ -47,7 +47,7 @@ def _go_where_is_typed(robot: Robot) -> None:
         if not all(map(math.isfinite, (x, y))) or not -180.0 <= degrees <= 180.0:
             print(f"expected x, y and -180 to 180 degrees, got {line.strip()!r}", file=sys.stderr)
             sys.exit(2)
-        robot.go([Pose2(x, y, math.radians(degrees))], turns=True)
-        base = robot.base()
-        rospy.loginfo("there: %.2f %.2f %.0f", base.x, base.y, math.degrees(base.yaw))
+        controller.follow([Pose2(x, y, math.radians(degrees))], align_yaw=True)
+        base_in_odom = controller.base_in_odom()
+        rospy.loginfo("there: %.2f %.2f %.0f", base_in_odom.x, base_in_odom.y, math.degrees(base_in_odom.yaw))
         print(MESSAGE, flush=True)

@@ -11,7 +11,7 @@ from tf2_ros import TransformBroadcaster
 from planar import SettingsError, Twist2
 from planar_ros.messages.conversion import pose2_to_msg
 from planar_ros.node.shell import run
-from turtlebot3_fake.wheels import TRACKS, Wheels
+from turtlebot3_fake.differential_drive import TRACKS, DifferentialDrive
 
 RATE = 30.0
 # Diagonal of the covariances of pose and velocity: x, y, z, roll, pitch, yaw.
@@ -30,7 +30,7 @@ class FakeNode:
         self._joint_frame = rospy.get_param("joint_states_frame", "base_footprint")
         self._odom_frame = rospy.get_param("odom_frame", "odom")
         self._base_frame = rospy.get_param("base_frame", "base_footprint")
-        self._wheels, self._lock = Wheels(model, rospy.get_time()), threading.Lock()
+        self._drive, self._lock = DifferentialDrive(model, rospy.get_time()), threading.Lock()
         self._odometry = rospy.Publisher("odom", Odometry, queue_size=100)
         self._joint_states = rospy.Publisher("joint_states", JointState, queue_size=100)
         self._broadcaster = TransformBroadcaster()
@@ -39,25 +39,25 @@ class FakeNode:
 
     def _on_command(self, message: Twist) -> None:
         with self._lock:
-            self._wheels.command(Twist2(message.linear.x, message.angular.z), rospy.get_time())
+            self._drive.command(Twist2(message.linear.x, message.angular.z), rospy.get_time())
 
     def _on_tick(self, _event: object) -> None:
         now = rospy.Time.now()
         with self._lock:
-            motion = self._wheels.advance(now.to_sec())
+            state = self._drive.advance(now.to_sec())
         odometry = Odometry(child_frame_id=self._base_frame)
         odometry.header.frame_id, odometry.header.stamp = self._odom_frame, now
-        odometry.pose.pose = pose2_to_msg(motion.base_in_odom)
-        odometry.twist.twist.linear.x, odometry.twist.twist.angular.z = motion.twist.v, motion.twist.omega
+        odometry.pose.pose = pose2_to_msg(state.base_in_odom)
+        odometry.twist.twist.linear.x, odometry.twist.twist.angular.z = state.twist.v, state.twist.omega
         for number, variance in enumerate(VARIANCES):
             odometry.pose.covariance[7 * number] = odometry.twist.covariance[7 * number] = variance
         joints = JointState(
-            name=self._joints, position=motion.angles, velocity=motion.speeds, effort=[0.0, 0.0]
+            name=self._joints, position=state.angles, velocity=state.speeds, effort=[0.0, 0.0]
         )
         joints.header.frame_id, joints.header.stamp = self._joint_frame, now
         transform = TransformStamped(header=odometry.header, child_frame_id=self._base_frame)
-        transform.transform.translation.x = motion.base_in_odom.x
-        transform.transform.translation.y = motion.base_in_odom.y
+        transform.transform.translation.x = state.base_in_odom.x
+        transform.transform.translation.y = state.base_in_odom.y
         transform.transform.rotation = odometry.pose.pose.orientation
         self._odometry.publish(odometry)
         self._joint_states.publish(joints)

@@ -25,13 +25,13 @@ class DriveNode:
         topic = rospy.get_param("cmd_vel_topic_name", "cmd_vel")
         self._publisher = rospy.Publisher(topic, Twist, queue_size=10)
         publish_on_shutdown(self._publisher, Twist())
-        rospy.Subscriber("odom", Odometry, self._see_odometry, queue_size=10)
-        rospy.Subscriber("scan", LaserScan, self._see_scan, queue_size=1)
+        rospy.Subscriber("odom", Odometry, self._on_odometry, queue_size=10)
+        rospy.Subscriber("scan", LaserScan, self._on_scan, queue_size=1)
 
-    def _see_odometry(self, message: Odometry) -> None:
+    def _on_odometry(self, message: Odometry) -> None:
         self._base = pose2_from_msg(message.pose.pose)
 
-    def _see_scan(self, scan: LaserScan) -> None:
+    def _on_scan(self, scan: LaserScan) -> None:
         ahead, left, right = (_range_at(scan, angle) for angle in (0.0, SIDE, -SIDE))
         velocity = self._wanderer.advance(ahead, left, right, self._base.yaw)
         message = Twist()

@@ -1,4 +1,4 @@
-from run_project.checkout.told import told_by
+from run_project.checkout.dry_run import recorded_calls
 
 SCRIPT = """#!/bin/sh
 catkin_dir=/home/workspace/catkin_ws
@@ -13,14 +13,14 @@ touch {touched}
 """
 
 
-def told(tmp_path, text):
+def dry_run(tmp_path, text):
     script = tmp_path / "home_service.sh"
     script.write_text(text)
-    return told_by(script, tmp_path, ["--fast"]).splitlines()
+    return recorded_calls(script, tmp_path, ["--fast"]).splitlines()
 
 
 def test_paths_that_a_script_puts_together_are_told(tmp_path):
-    lines = told(tmp_path, SCRIPT.replace("{touched}", str(tmp_path / "touched")))
+    lines = dry_run(tmp_path, SCRIPT.replace("{touched}", str(tmp_path / "touched")))
     assert "/home/workspace/catkin_ws/devel" in lines
     assert "/home/workspace/catkin_ws/devel/setup.bash" in lines
     world = "world_file:=/home/workspace/catkin_ws/src/World/my_world.world"
@@ -29,20 +29,20 @@ def test_paths_that_a_script_puts_together_are_told(tmp_path):
 
 
 def test_nothing_that_a_script_calls_is_done(tmp_path):
-    lines = told(tmp_path, SCRIPT.replace("{touched}", str(tmp_path / "touched")))
+    lines = dry_run(tmp_path, SCRIPT.replace("{touched}", str(tmp_path / "touched")))
     assert str(tmp_path / "touched") in lines
     assert not (tmp_path / "touched").exists()
     assert "listening" not in "".join(lines)
 
 
 def test_a_script_that_loops_for_ever_is_listened_to_for_a_while(tmp_path, monkeypatch):
-    monkeypatch.setattr("run_project.checkout.told.PATIENCE", 0.5)
-    assert "--once" in told(tmp_path, "rosrun a b --once\nwhile true; do :; done\n")
+    monkeypatch.setattr("run_project.checkout.dry_run.DRY_RUN_SECONDS", 0.5)
+    assert "--once" in dry_run(tmp_path, "rosrun a b --once\nwhile true; do :; done\n")
 
 
 def test_a_script_that_reads_its_arguments_hears_them(tmp_path):
-    assert "--fast" in told(tmp_path, 'roslaunch a b "$1"\n')
+    assert "--fast" in dry_run(tmp_path, 'roslaunch a b "$1"\n')
 
 
 def test_a_script_in_another_language_tells_nothing(tmp_path):
-    assert told(tmp_path, "#!/usr/bin/env python3\nprint(1)\n") == []
+    assert dry_run(tmp_path, "#!/usr/bin/env python3\nprint(1)\n") == []

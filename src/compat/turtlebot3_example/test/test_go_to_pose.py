@@ -5,33 +5,39 @@ import math
 import pytest
 
 from planar import Pose2, wrap
-from turtlebot3_example.going import FASTEST, NEAR, NEAR_ANGLE, figure, velocity_to
+from turtlebot3_example.go_to_pose import (
+    MAX_VELOCITY,
+    POSITION_TOLERANCE,
+    YAW_TOLERANCE,
+    figure_corners,
+    velocity_to,
+)
 
 PERIOD = 0.05
 
 
-def driven(base, goal, turns=True):
+def driven(base_in_odom, goal, align_yaw=True):
     for _ in range(4000):
-        velocity = velocity_to(base, goal, turns)
+        velocity = velocity_to(base_in_odom, goal, align_yaw)
         if velocity is None:
-            return base
-        assert abs(velocity.v) <= FASTEST.v and abs(velocity.omega) <= FASTEST.omega
+            return base_in_odom
+        assert abs(velocity.v) <= MAX_VELOCITY.v and abs(velocity.omega) <= MAX_VELOCITY.omega
         turned = Pose2(0.0, 0.0, velocity.omega * PERIOD)
-        base = base @ Pose2(velocity.v * PERIOD, 0.0) @ turned
-    raise AssertionError(f"never there: {base}")
+        base_in_odom = base_in_odom @ Pose2(velocity.v * PERIOD, 0.0) @ turned
+    raise AssertionError(f"never there: {base_in_odom}")
 
 
 @pytest.mark.parametrize("goal", [Pose2(1.0, 0.5, 1.0), Pose2(-1.0, 0.0, 3.1), Pose2(0.0, -0.5, -2.0)])
 def test_it_gets_to_a_place_and_looks_as_it_should(goal):
     end = driven(Pose2(0.2, 0.1, -3.0), goal)
-    assert end.distance_to(goal) <= NEAR + 0.01
-    assert abs(wrap(end.yaw - goal.yaw)) < NEAR_ANGLE
+    assert end.distance_to(goal) <= POSITION_TOLERANCE + 0.01
+    assert abs(wrap(end.yaw - goal.yaw)) < YAW_TOLERANCE
 
 
 @pytest.mark.parametrize("mode, length", [(1, 4.0), (2, 3.0), (3, math.tau)])
 def test_a_figure_ends_where_it_began_and_is_as_long_as_it_should_be(mode, length):
     start = Pose2(1.0, 2.0, 0.3)
-    corners = figure(start, mode, 1.0)
+    corners = figure_corners(start, mode, 1.0)
     assert corners[-1].distance_to(start) < 1e-9
     way = sum(a.distance_to(b) for a, b in zip([start, *corners], corners))
     assert way == pytest.approx(length, rel=0.01)
@@ -40,4 +46,4 @@ def test_a_figure_ends_where_it_began_and_is_as_long_as_it_should_be(mode, lengt
 @pytest.mark.parametrize("mode, size", [(4, 1.0), (1, 0.0), (1, math.nan)])
 def test_what_is_no_figure_is_refused(mode, size):
     with pytest.raises(ValueError, match="there is no figure"):
-        figure(Pose2(), mode, size)
+        figure_corners(Pose2(), mode, size)

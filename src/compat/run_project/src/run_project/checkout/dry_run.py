@@ -13,14 +13,14 @@ from pathlib import Path
 from typing import Dict, List, Sequence
 
 # Programs that scripts put paths together with, and that change nothing.
-HARMLESS = (
+SIDE_EFFECT_FREE_PROGRAMS = (
     "awk basename bash cat cut date dirname env expr find grep head hostname id ls nproc readlink realpath "
     "sed seq sh sort tail tr uname wc which whoami"
 ).split()
 # Seconds: some scripts loop for ever.
-PATIENCE = 5.0
+DRY_RUN_SECONDS = 5.0
 # Read by bash before the script: what it calls is written down, what it goes to or reads need not be there.
-LISTENING = """
+RECORDING_PRELUDE = """
 _told() { printf '%s\\n' "$@"; env; } >> "$RUN_PROJECT_TOLD"
 command_not_found_handle() { _told "${@:2}"; }
 cd() { _told "${@: -1}"; builtin cd "$@" 2> /dev/null || true; }
@@ -30,16 +30,16 @@ for _name in kill wait read; do eval "$_name() { :; }"; done
 """
 
 
-def told_by(script: Path, folder: Path, arguments: Sequence[str]) -> str:
+def recorded_calls(script: Path, folder: Path, arguments: Sequence[str]) -> str:
     """What the shell script says when it is started in ``folder``: words and variables, one a line."""
     if not _is_shell(script):
         return ""
     with tempfile.TemporaryDirectory(prefix="listening-") as made:
         here = Path(made)
-        (here / "listening.bash").write_text(LISTENING)
+        (here / "listening.bash").write_text(RECORDING_PRELUDE)
         programs = here / "bin"
         programs.mkdir()
-        for name in HARMLESS:
+        for name in SIDE_EFFECT_FREE_PROGRAMS:
             found = shutil.which(name)
             if found:
                 (programs / name).symlink_to(found)
@@ -50,8 +50,8 @@ def told_by(script: Path, folder: Path, arguments: Sequence[str]) -> str:
             **{name: os.environ[name] for name in ("HOME", "USER") if name in os.environ},
         }
         _run([str(shutil.which("bash")), str(script), *arguments], folder, variables)
-        told = here / "told"
-        lines = told.read_text(errors="replace").splitlines() if told.exists() else []
+        recorded = here / "told"
+        lines = recorded.read_text(errors="replace").splitlines() if recorded.exists() else []
         return "\n".join(line for line in lines if made not in line)
 
 
@@ -72,7 +72,7 @@ def _run(command: List[str], folder: Path, variables: Dict[str, str]) -> None:
     )
     try:
         with contextlib.suppress(subprocess.TimeoutExpired):
-            process.wait(PATIENCE)
+            process.wait(DRY_RUN_SECONDS)
     finally:
         with contextlib.suppress(ProcessLookupError):
             os.killpg(process.pid, signal.SIGKILL)

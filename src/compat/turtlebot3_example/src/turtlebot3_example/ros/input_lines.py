@@ -11,7 +11,7 @@ from teleop_lite.terminal import Pipe
 POLL_SECONDS = 0.1
 
 
-def typed_lines() -> Iterator[str]:
+def read_lines() -> Iterator[str]:
     """Reading would wait for the next key: rospy's handler of Ctrl-C interrupts nothing."""
     pipe = Pipe(sys.stdin.fileno())
     while not (rospy.is_shutdown() or pipe.is_at_end):

@@ -18,25 +18,25 @@ REPOSITORIES: Mapping[str, Tuple[str, ...]] = {
 IGNORED = "CATKIN_IGNORE"
 
 
-def lendable(root: Path, named: Iterable[str], stand_ins: Path) -> Dict[Path, Path]:
+def find_substitutes(root: Path, named: Iterable[str], stand_ins: Path) -> Dict[Path, Path]:
     """Which of our package folders to lend to the checkout at ``root``, by the folders to be seen as them.
 
     Those are relative: what is empty in the checkout, what its .gitmodules name, and, of what is ``named`` as
     ``repository/package`` in the texts of its scripts, what is not there, beside the other packages.
     """
-    lent: Dict[Path, Path] = {}
+    substitutes: Dict[Path, Path] = {}
     for folder in sorted({*_empty(root), *_submodules(root), *_named(root, named)}):
         packages = REPOSITORIES.get(folder.name)
         if packages is None and (stand_ins / folder.name / "package.xml").is_file():
-            lent[folder] = stand_ins / folder.name
+            substitutes[folder] = stand_ins / folder.name
         for package in packages or ():
-            lent[folder / package] = stand_ins / package
-    return lent
+            substitutes[folder / package] = stand_ins / package
+    return substitutes
 
 
-def lend(lent: Mapping[Path, Path], checkout: Path) -> None:
+def link_substitutes(substitutes: Mapping[Path, Path], checkout: Path) -> None:
     """Makes the folders in the copy ``checkout``, with links to what is in ours; none is built again."""
-    for folder, package in lent.items():
+    for folder, package in substitutes.items():
         target = checkout / folder
         target.mkdir(parents=True, exist_ok=True)
         (target / IGNORED).touch()
@@ -44,9 +44,9 @@ def lend(lent: Mapping[Path, Path], checkout: Path) -> None:
             (target / entry.name).symlink_to(entry)
 
 
-def files_of(lent: Mapping[Path, Path]) -> Iterable[str]:
+def substitute_files(substitutes: Mapping[Path, Path]) -> Iterable[str]:
     """All files that the lent folders have, relative to the checkout."""
-    for folder, package in lent.items():
+    for folder, package in substitutes.items():
         for file in package.rglob("*"):
             if file.is_file():
                 yield str(folder / file.relative_to(package))

@@ -1,8 +1,8 @@
 from pathlib import Path
 
 from run_project.checkout.layout import read_checkout
-from run_project.checkout.placement import place
-from run_project.preparing.building import copy_checkout
+from run_project.checkout.placement import best_placement
+from run_project.preparation.building import copy_checkout
 
 DEMO = "turtlebot_simulator/turtlebot_gazebo/launch/amcl_demo.launch"
 SCRIPT = f"xterm -e 'roslaunch ../{DEMO} map_file:=$(pwd)/../map/map.yaml'"
@@ -22,7 +22,7 @@ def project(folder, script=SCRIPT):
 def copied(checkout, work):
     script = "scripts/home_service.sh"
     text = (checkout.root / script).read_text()
-    placement = place(checkout, script, {script: text}, "/home/me", "me")
+    placement = best_placement(checkout, script, {script: text}, "/home/me", "me")
     copy_checkout(checkout, placement, work)
     return placement, work / "tree" / placement.checkout
 
@@ -60,4 +60,4 @@ def test_what_the_project_has_itself_is_left_as_it_is(tmp_path):
 def test_folders_of_other_names_stay_empty(tmp_path):
     root = project(tmp_path / "repo", script="")
     (root / "thirdparty").mkdir()
-    assert not read_checkout(root).lent
+    assert not read_checkout(root).substitutes

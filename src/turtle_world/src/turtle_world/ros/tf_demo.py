@@ -12,9 +12,9 @@ from planar import PlanarError
 from planar_ros.node.shell import run
 
 LEADER, FOLLOWER = "turtle1", "turtle2"
-SPAWNED_AT = (4.0, 2.0, 0.0)  # x (m), y (m), theta (rad)
+SPAWN_POSE = (4.0, 2.0, 0.0)  # x (m), y (m), theta (rad)
 # Speeds by how far away the leader is (1/s) and by the angle to it (1/s).
-PER_DISTANCE, PER_ANGLE = 0.5, 4.0
+LINEAR_GAIN, ANGULAR_GAIN = 0.5, 4.0
 SERVICE_SECONDS = 30.0
 
 
@@ -63,15 +63,15 @@ def _follow():
         except tf2_ros.TransformException:
             continue  # one of them has not told yet where it is
         twist = Twist()
-        twist.linear.x = PER_DISTANCE * math.hypot(seen.x, seen.y)
-        twist.angular.z = PER_ANGLE * math.atan2(seen.y, seen.x)
+        twist.linear.x = LINEAR_GAIN * math.hypot(seen.x, seen.y)
+        twist.angular.z = ANGULAR_GAIN * math.atan2(seen.y, seen.x)
         publisher.publish(twist)
 
 
 def _spawn(turtle: str) -> None:
     try:
         rospy.wait_for_service("spawn", SERVICE_SECONDS)
-        rospy.ServiceProxy("spawn", Spawn)(*SPAWNED_AT, turtle)
+        rospy.ServiceProxy("spawn", Spawn)(*SPAWN_POSE, turtle)
     except rospy.ROSInterruptException:
         raise
     except rospy.ROSException as error:

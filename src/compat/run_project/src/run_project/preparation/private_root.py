@@ -13,12 +13,16 @@ import sys
 from pathlib import Path
 from typing import Dict, List, Mapping
 
-from run_project.errors import PlaceError
+from planar import PlanarError
 
 MS_BIND, MS_REC = 4096, 16384
 
 
-def prefix(mounts: Mapping[Path, Path], root: Path) -> List[str]:
+class MountError(PlanarError):
+    """The absolute paths that the project names cannot be provided on this system."""
+
+
+def private_mount_command(mounts: Mapping[Path, Path], root: Path) -> List[str]:
     """What to put before a command for it to run where ``mounts`` (target: source) are seen.
 
     ``root`` is an empty folder. Raises PlaceError if this system allows no private mounts.
@@ -35,15 +39,15 @@ def prefix(mounts: Mapping[Path, Path], root: Path) -> List[str]:
         refusal = "there is no command unshare"
     if refusal:
         targets = ", ".join(map(str, mounts))
-        raise PlaceError(
+        raise MountError(
             f"the project's files name {targets}, and this system does not let them be provided ({refusal}): "
             "run as root, allow user namespaces, or put the project there"
         )
     plan = json.dumps([[str(target), str(source)] for target, source in mounts.items()])
-    return [*unshare, sys.executable, "-m", "run_project.preparing.private_root", str(root), plan]
+    return [*unshare, sys.executable, "-m", "run_project.preparation.private_root", str(root), plan]
 
 
-def mirror(host: Path, new: Path, mounts: Mapping[Path, Path]) -> None:
+def bind_tree(host: Path, new: Path, mounts: Mapping[Path, Path]) -> None:
     """Fills the empty folder ``new`` with what is in ``host``, and with the mounts at and below ``host``."""
     inner = {target: source for target, source in mounts.items() if host in target.parents}
     above = {host / target.relative_to(host).parts[0] for target in inner}
@@ -54,15 +58,15 @@ def mirror(host: Path, new: Path, mounts: Mapping[Path, Path]) -> None:
     for path in sorted({*shown, *above}):
         there = new / path.name
         if path not in above:
-            _show(shown[path], there)
+            _bind(shown[path], there)
         elif path in mounts and not path.is_dir() and not any(path in target.parents for target in inner):
-            _show(mounts[path], there)
+            _bind(mounts[path], there)
         else:
             there.mkdir()
-            mirror(path, there, mounts)
+            bind_tree(path, there, mounts)
 
 
-def _show(path: Path, there: Path) -> None:
+def _bind(path: Path, there: Path) -> None:
     if path.is_symlink():
         there.symlink_to(os.readlink(path))
         return
@@ -84,7 +88,7 @@ def main() -> None:
     root, plan, *command = sys.argv[1:]
     folder = Path.cwd()
     _mount("tmpfs", root, "tmpfs", 0)
-    mirror(Path("/"), Path(root), {Path(target): Path(source) for target, source in json.loads(plan)})
+    bind_tree(Path("/"), Path(root), {Path(target): Path(source) for target, source in json.loads(plan)})
     os.chroot(root)
     os.chdir(folder)
     os.execvp(command[0], command)

@@ -14,7 +14,7 @@ _INCLUDED = re.compile(r"<include\b[^>]*\bfile\s*=\s*[\"']([^\"']+)")
 _WORLD = re.compile(r"empty_world\.launch|type=\"gz(?:server|ebo)\"")
 
 
-class Lesson(enum.Enum):
+class CourseProject(enum.Enum):
     """Which project of the course; the value is what it is called on the command line."""
 
     MAP = "map_my_world"
@@ -24,20 +24,20 @@ class Lesson(enum.Enum):
 
 # What the launch file of a lesson starts, and how it is called most often; later ones
 # contain earlier ones.
-_SIGNS: Mapping[Lesson, Tuple["re.Pattern[str]", str]] = {
-    Lesson.MAP: (re.compile(r'pkg="(?:rtabmap_ros|gmapping)"'), "mapping"),
-    Lesson.LOCALIZE: (re.compile(r'pkg="amcl"'), "amcl"),
-    Lesson.CHASE: (re.compile(r'type="process_image(?:\.py)?"'), "ball_chaser"),
+_SIGNATURES: Mapping[CourseProject, Tuple["re.Pattern[str]", str]] = {
+    CourseProject.MAP: (re.compile(r'pkg="(?:rtabmap_ros|gmapping)"'), "mapping"),
+    CourseProject.LOCALIZE: (re.compile(r'pkg="amcl"'), "amcl"),
+    CourseProject.CHASE: (re.compile(r'type="process_image(?:\.py)?"'), "ball_chaser"),
 }
 # With a database that is already there, which no lesson begins with.
-_AFTERWARDS = "localization"
+_LOCALIZATION_ONLY = "localization"
 
 
 @dataclass(frozen=True)
-class Plan:
+class ProjectLaunchPlan:
     """A lesson, and the words after roslaunch, one a window: ``my_robot world.launch``."""
 
-    lesson: Lesson
+    project: CourseProject
     launches: Tuple[str, ...]
 
     def script(self) -> str:
@@ -46,14 +46,16 @@ class Plan:
         return "\n".join(["#!/bin/sh", *lines, "wait"]) + "\n"
 
 
-def plan_of(packages: Mapping[str, Path], texts: Mapping[str, str], wanted: Optional[str]) -> Optional[Plan]:
+def find_launch_plan(
+    packages: Mapping[str, Path], texts: Mapping[str, str], wanted: Optional[str]
+) -> Optional[ProjectLaunchPlan]:
     """The lesson of a checkout with ``packages`` (folders by name), the ``wanted`` one or the last there is.
 
     ``texts``: the contents of its files by path. None if there is none.
     """
     launches = dict(_launch_files(packages, texts))
-    for lesson, (sign, name) in _SIGNS.items():
-        if wanted not in (None, lesson.value):
+    for project, (sign, name) in _SIGNATURES.items():
+        if wanted not in (None, project.value):
             continue
         started = [
             file
@@ -63,13 +65,17 @@ def plan_of(packages: Mapping[str, Path], texts: Mapping[str, str], wanted: Opti
         ]
         if not started:
             continue
-        chosen = min(started, key=lambda file: _oddity(file, name))
+        chosen = min(started, key=lambda file: _name_rank(file, name))
         worlds = [file for file, text in launches.items() if _WORLD.search(text)]
-        world = min(worlds, key=lambda file: _oddity(file, "world"), default=chosen)
+        world = min(worlds, key=lambda file: _name_rank(file, "world"), default=chosen)
         has_world = world == chosen or f"/{Path(world).name}" in launches[chosen]
         files = (chosen,) if has_world else (world, chosen)
-        return Plan(
-            lesson, tuple(_as_called(_words(file, packages), launches[file], texts) for file in files)
+        return ProjectLaunchPlan(
+            project,
+            tuple(
+                _with_required_arguments(_roslaunch_arguments(file, packages), launches[file], texts)
+                for file in files
+            ),
         )
     return None
 
@@ -86,13 +92,13 @@ def _included(text: str, launches: Mapping[str, str]) -> Iterator[str]:
     return (other for file, other in launches.items() if Path(file).name in names)
 
 
-def _oddity(file: str, name: str) -> Tuple[bool, bool, int, str]:
+def _name_rank(file: str, name: str) -> Tuple[bool, bool, int, str]:
     """Small for what is called as most call it."""
     stem = Path(file).stem
-    return _AFTERWARDS in stem, stem != name, len(file), file
+    return _LOCALIZATION_ONLY in stem, stem != name, len(file), file
 
 
-def _words(file: str, packages: Mapping[str, Path]) -> str:
+def _roslaunch_arguments(file: str, packages: Mapping[str, Path]) -> str:
     inside: Dict[str, Path] = {
         name: folder for name, folder in packages.items() if folder in Path(file).parents
     }
@@ -100,22 +106,22 @@ def _words(file: str, packages: Mapping[str, Path]) -> str:
     return f"{package} {Path(file).name}"
 
 
-def _as_called(words: str, launch: str, texts: Mapping[str, str]) -> str:
+def _with_required_arguments(words: str, launch: str, texts: Mapping[str, str]) -> str:
     """With the arguments that its author's scripts give, if the launch file lacks some without them."""
-    lacking = _lacking(launch)
-    if not lacking:
+    required = _required_arguments(launch)
+    if not required:
         return words
     command = r"[ \t]+".join(map(re.escape, ["roslaunch", *words.split()]))
     call = re.compile(command + r"((?:[ \t]+\w+:=[^\s\"';&`]+)+)")
     for _, text in sorted(texts.items()):
         for arguments in call.findall(text):
             given = arguments.split()
-            if lacking <= {word.partition(":=")[0] for word in given}:
+            if required <= {word.partition(":=")[0] for word in given}:
                 return " ".join([words, *given])
     return words
 
 
-def _lacking(launch: str) -> Set[str]:
+def _required_arguments(launch: str) -> Set[str]:
     """Arguments of a launch file that have no value unless they are given one."""
     declared: Dict[str, bool] = {}
     for tag in _ARGUMENT.findall(launch):

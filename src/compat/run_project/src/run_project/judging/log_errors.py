@@ -4,22 +4,22 @@ import re
 from pathlib import Path
 from typing import List
 
-MOST = 20
+MAX_ERRORS = 20
 _COLOUR = re.compile(r"\x1b\[[0-9;]*m")
-_COMPLAINT = re.compile(
+_ERROR_LINE = re.compile(
     r"^\[ *(?:ERROR|FATAL)\]|\berror:|process has died|Segmentation fault|RLException|ResourceNotFound|"
     r"Resource not found|cannot launch node|command not found|No such file|Couldn't find|Traceback",
     re.IGNORECASE,
 )
 
 
-def complaints_in(folder: Path) -> List[str]:
+def find_log_errors(folder: Path) -> List[str]:
     """The first lines that tell of errors, each once, with the log's name before it."""
     found: List[str] = []
     for log in sorted(set(folder.glob("*.log")) - {folder / "build.log"}):
         for line in log.read_text(errors="replace").splitlines():
             line = _COLOUR.sub("", line).strip()
             entry = f"{log.stem}: {line}"
-            if _COMPLAINT.search(line) and entry not in found:
+            if _ERROR_LINE.search(line) and entry not in found:
                 found.append(entry)
-    return found[:MOST]
+    return found[:MAX_ERRORS]

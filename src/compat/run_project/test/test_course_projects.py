@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from run_project.lessons.outcome import Outcome
-from run_project.lessons.plan import Lesson, Plan, plan_of
+from run_project.course.checks import CheckResults
+from run_project.course.launch_plan import CourseProject, ProjectLaunchPlan, find_launch_plan
 
 WORLD = '<launch><include file="$(find gazebo_ros)/launch/empty_world.launch"/></launch>'
 CHASER = '<launch><node name="p" type="process_image" pkg="ball_chaser"/></launch>'
@@ -17,21 +17,23 @@ CHASE_FILES = {
 
 
 def planned(more=(), wanted=None):
-    return plan_of(PACKAGES, {**CHASE_FILES, **dict(more)}, wanted)
+    return find_launch_plan(PACKAGES, {**CHASE_FILES, **dict(more)}, wanted)
 
 
 def test_a_robot_with_a_world_and_process_image_chases_a_ball():
-    assert planned() == Plan(Lesson.CHASE, ("my_robot world.launch", "ball_chaser ball_chaser.launch"))
+    assert planned() == ProjectLaunchPlan(
+        CourseProject.CHASE, ("my_robot world.launch", "ball_chaser ball_chaser.launch")
+    )
 
 
 def test_the_last_project_that_is_there_counts_as_each_contains_the_earlier_ones():
     amcl = {"my_robot/launch/amcl.launch": AMCL}
-    assert planned(amcl).lesson is Lesson.LOCALIZE
-    assert planned({**amcl, "my_robot/launch/mapping.launch": RTABMAP}).lesson is Lesson.MAP
+    assert planned(amcl).project is CourseProject.LOCALIZE
+    assert planned({**amcl, "my_robot/launch/mapping.launch": RTABMAP}).project is CourseProject.MAP
 
 
 def test_an_earlier_one_may_be_named():
-    assert planned({"my_robot/launch/amcl.launch": AMCL}, "go_chase_it").lesson is Lesson.CHASE
+    assert planned({"my_robot/launch/amcl.launch": AMCL}, "go_chase_it").project is CourseProject.CHASE
     assert planned(wanted="map_my_world") is None
 
 
@@ -57,22 +59,22 @@ def test_a_launch_file_called_as_most_call_it_may_start_all_in_files_of_their_ow
 
 
 def test_arguments_that_a_launch_file_lacks_are_those_that_its_author_gives():
-    told = {
+    files = {
         "my_robot/launch/world.launch": WORLD + '<arg name="gui" default="true"/> $(arg gui) $(arg map)',
         "a.sh": "roslaunch my_robot world.launch gui:=false\n",
         "start.sh": 'xterm -e "roslaunch my_robot world.launch map:=kitchen gui:=false" &\n',
     }
-    assert planned(told).launches[0] == "my_robot world.launch map:=kitchen gui:=false"
-    told["my_robot/launch/world.launch"] = WORLD + '<arg name="map" default="office"/> $(arg map)'
-    assert planned(told).launches[0] == "my_robot world.launch"
-    told["my_robot/launch/world.launch"] = WORLD + '<arg name="map" doc="which"/>'
-    assert planned(told).launches[0] == "my_robot world.launch map:=kitchen gui:=false"
-    del told["start.sh"]
-    assert planned(told).launches[0] == "my_robot world.launch"
+    assert planned(files).launches[0] == "my_robot world.launch map:=kitchen gui:=false"
+    files["my_robot/launch/world.launch"] = WORLD + '<arg name="map" default="office"/> $(arg map)'
+    assert planned(files).launches[0] == "my_robot world.launch"
+    files["my_robot/launch/world.launch"] = WORLD + '<arg name="map" doc="which"/>'
+    assert planned(files).launches[0] == "my_robot world.launch map:=kitchen gui:=false"
+    del files["start.sh"]
+    assert planned(files).launches[0] == "my_robot world.launch"
 
 
 def test_what_stands_in_comments_starts_nothing():
-    assert plan_of(PACKAGES, {"my_robot/launch/a.launch": f"<!-- {AMCL} -->"}, None) is None
+    assert find_launch_plan(PACKAGES, {"my_robot/launch/a.launch": f"<!-- {AMCL} -->"}, None) is None
 
 
 def test_its_script_opens_a_window_for_each_launch_file():
@@ -85,11 +87,11 @@ def test_its_script_opens_a_window_for_each_launch_file():
 
 
 def test_a_lesson_succeeds_if_all_that_was_tried_went_well():
-    outcome = Outcome()
-    assert not outcome.verdict().success, "nothing was tried"
-    outcome.note(True, "chased the ball")
-    assert outcome.verdict().success
-    assert outcome.verdict().reason == "1 of 1 as meant: chased the ball"
-    assert not outcome.verdict("interrupted").success
-    outcome.note(False, "goes on without it")
-    assert not outcome.verdict().success
+    results = CheckResults()
+    assert not results.verdict().success, "nothing was tried"
+    results.add(True, "chased the ball")
+    assert results.verdict().success
+    assert results.verdict().reason == "1 of 1 as meant: chased the ball"
+    assert not results.verdict("interrupted").success
+    results.add(False, "goes on without it")
+    assert not results.verdict().success

@@ -14,28 +14,28 @@ from planar_ros.messages.transforms import Transforms
 from planar_ros.node.listeners import has_all_subscribers
 
 if TYPE_CHECKING:
-    from run_project.ros.people.person import Person
+    from run_project.ros.scripted_user.user import ScriptedUser
 
 # Metres by which the robot may be wrong; how far it is sent, and the share of what is free.
-ALLOWED, FAR, SHARE = 0.3, 2.0, 0.6
+MAX_ERROR, MAX_GOAL_DISTANCE, DISTANCE_FRACTION = 0.3, 2.0, 0.6
 # Simulated seconds for a goal, and rad/s to turn round once.
-GOAL_SECONDS, TURN = 120.0, 0.5
+GOAL_SECONDS, TURN_RATE = 120.0, 0.5
 SETTLE_SECONDS = 2.0
 SUCCEEDED = 3
 # Metres and radians without which being localized proves nothing.
-ENOUGH = 0.5
+MIN_MOTION = 0.5
 
 
-def localize(person: "Person") -> None:
+def check_localization(user: "ScriptedUser") -> None:
     """Sends the robot there and back where it has a move_base, else turns it; looks how far off it is."""
-    person.wait(lambda: person.has_node("amcl"), 120.0, "no amcl ran", is_wall=True)
+    user.wait(lambda: user.has_node("amcl"), 120.0, "no amcl ran", is_wall=True)
     transforms = Transforms()
     frames = (
         rospy.get_param("/amcl/global_frame_id", "map"),
         rospy.get_param("/amcl/base_frame_id", "base_link"),
     )
     global_frame, base_frame = (frame.lstrip("/") for frame in frames)
-    person.wait(
+    user.wait(
         lambda: transforms.lookup(global_frame, base_frame) is not None,
         120.0,
         f"no transform from {global_frame} to {base_frame}",
@@ -43,39 +43,39 @@ def localize(person: "Person") -> None:
     )
     begun = transforms.lookup(global_frame, base_frame)
     assert begun is not None
-    if person.topic_of("actionlib_msgs/GoalStatusArray"):
-        bearing = person.roomiest()
-        distance = min(FAR, SHARE * person.room(bearing))
+    if user.find_topic("actionlib_msgs/GoalStatusArray"):
+        bearing = user.bearing_with_most_space()
+        distance = min(MAX_GOAL_DISTANCE, DISTANCE_FRACTION * user.free_distance(bearing))
         there = begun @ Pose2(distance * math.cos(bearing), distance * math.sin(bearing), bearing)
-        _go(person, there, global_frame)
-        _go(person, begun, global_frame)
+        _send_goal(user, there, global_frame)
+        _send_goal(user, begun, global_frame)
     else:
         since = rospy.get_time()
-        while not person.wait(lambda: rospy.get_time() - since > math.tau / TURN, 0.2):
-            person.drive(0.0, TURN)
-        person.drive(0.0, 0.0)
-    person.sleep(SETTLE_SECONDS)
+        while not user.wait(lambda: rospy.get_time() - since > math.tau / TURN_RATE, 0.2):
+            user.drive(0.0, TURN_RATE)
+        user.drive(0.0, 0.0)
+    user.sleep(SETTLE_SECONDS)
     estimate = transforms.lookup(global_frame, base_frame)
     assert estimate is not None
-    off = estimate.distance_to(person.base)
-    person.note(person.moved > ENOUGH, f"moved by {person.moved:.0f} m and rad")
-    person.note(off < ALLOWED, f"localized within {off:.2f} m (at most {ALLOWED:g} m off)")
+    off = estimate.distance_to(user.base)
+    user.add_check(user.total_motion > MIN_MOTION, f"moved by {user.total_motion:.0f} m and rad")
+    user.add_check(off < MAX_ERROR, f"localized within {off:.2f} m (at most {MAX_ERROR:g} m off)")
 
 
-def _go(person: "Person", place: Pose2, frame: str) -> None:
+def _send_goal(user: "ScriptedUser", place: Pose2, frame: str) -> None:
     """As with rviz's 2D Nav Goal."""
     results: List[MoveBaseActionResult] = []
     listener = rospy.Subscriber("/move_base/result", MoveBaseActionResult, results.append, queue_size=5)
     goals = rospy.Publisher("/move_base_simple/goal", PoseStamped, queue_size=1)
-    person.wait(lambda: has_all_subscribers(goals), 60.0, "no move_base listened", is_wall=True)
+    user.wait(lambda: has_all_subscribers(goals), 60.0, "no move_base listened", is_wall=True)
     goal = PoseStamped()
     goal.header.frame_id, goal.header.stamp, goal.pose = frame, rospy.get_rostime(), pose2_to_msg(place)
     goals.publish(goal)
-    is_there = person.wait(lambda: bool(results), GOAL_SECONDS) and results[0].status.status == SUCCEEDED
+    is_there = user.wait(lambda: bool(results), GOAL_SECONDS) and results[0].status.status == SUCCEEDED
     if not results:
         canceller = rospy.Publisher("/move_base/cancel", GoalID, queue_size=1)
-        person.wait(lambda: has_all_subscribers(canceller), 10.0, is_wall=True)
+        user.wait(lambda: has_all_subscribers(canceller), 10.0, is_wall=True)
         canceller.publish(GoalID())
-        person.wait(lambda: bool(results), SETTLE_SECONDS)
+        user.wait(lambda: bool(results), SETTLE_SECONDS)
     listener.unregister()
-    person.tell(f"{'reached' if is_there else 'did not reach'} ({place.x:.2f}, {place.y:.2f})")
+    user.log(f"{'reached' if is_there else 'did not reach'} ({place.x:.2f}, {place.y:.2f})")

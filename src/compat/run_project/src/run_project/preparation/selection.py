@@ -7,7 +7,7 @@ from typing import Callable, Dict, List, Mapping, Set
 
 # Packages of TurtleBot's time that projects carry along in source. Compiled, they ask for a Boost or a
 # pluginlib of their day; in simulation nothing of them is needed that is not here already.
-CARRIED_ALONG = re.compile(
+VENDORED_PACKAGES = re.compile(
     r"(openslam_gmapping|gmapping|slam_gmapping|turtlebot_.+|kobuki_.+|yocs_.+|yujin_.+|ecl_.+|create_.+|"
     r"amcl|map_server|move_base|move_slow_and_clear|navfn|nav_core|global_planner|base_local_planner|"
     r"dwa_local_planner|costmap_2d|voxel_grid|carrot_planner|clear_costmap_recovery|rotate_recovery|"
@@ -23,7 +23,7 @@ _FIND = re.compile(r"\$\(find\s+([\w-]+)\)")
 
 
 @dataclass(frozen=True)
-class Selection:
+class PackageSelection:
     """What is not built of a project, and why.
 
     ``replaced``: packages whose place ours take. ``unbuilt``: packages of which only the files are used, as
@@ -35,9 +35,9 @@ class Selection:
     absent: Dict[str, List[str]]
 
 
-def select(
-    folders: Mapping[str, Path], stand_ins: Mapping[str, Path], is_there: Callable[[str], bool]
-) -> Selection:
+def select_packages(
+    folders: Mapping[str, Path], stand_ins: Mapping[str, Path], is_installed: Callable[[str], bool]
+) -> PackageSelection:
     """Divides the packages in a project's ``folders``.
 
     ``stand_ins``: the folders of this workspace's packages that stand in for official ones. ``is_there``:
@@ -50,22 +50,22 @@ def select(
         cmake = _read(folder / "CMakeLists.txt")
         is_compiled = bool(_COMPILED.search(cmake))
         lost_parts = sorted(
-            other for other in _found_in_xacro(folder) if other not in folders and not is_there(other)
+            other for other in _found_in_xacro(folder) if other not in folders and not is_installed(other)
         )
         if name in stand_ins and lost_parts:
             replaced[name] = f"its robots need {', '.join(lost_parts)}, which is not there"
-        elif name in stand_ins and is_compiled and _has_programs(stand_ins[name]):
+        elif name in stand_ins and is_compiled and _has_nodes_or_messages(stand_ins[name]):
             replaced[name] = "sources of that time do not build today"
-        elif is_compiled and CARRIED_ALONG.fullmatch(name):
+        elif is_compiled and VENDORED_PACKAGES.fullmatch(name):
             unbuilt[name] = "sources of that time do not build today; the simulation does without"
         else:
             for other in sorted(_components(cmake) - set(folders)):
-                if not is_there(other):
+                if not is_installed(other):
                     absent.setdefault(other, []).append(name)
-    return Selection(replaced, unbuilt, absent)
+    return PackageSelection(replaced, unbuilt, absent)
 
 
-def _has_programs(stand_in: Path) -> bool:
+def _has_nodes_or_messages(stand_in: Path) -> bool:
     return any((stand_in / part).is_dir() for part in ("nodes", "msg"))
 
 

@@ -7,14 +7,14 @@ from fissix.pgen2.tokenize import TokenError
 from fissix.refactor import RefactoringTool, get_fixers_from_package
 
 # As wide as Python 2 took them.
-TAB = 8
+TAB_WIDTH = 8
 
 
-def in_python3(source: str) -> str:
+def to_python3(source: str) -> str:
     """The source in Python 3; as it is if it is that already, or no Python at all."""
     if _is_python3(source):
         return source
-    without_tabs = source.expandtabs(TAB)
+    without_tabs = source.expandtabs(TAB_WIDTH)
     if _is_python3(without_tabs):
         return without_tabs
     tool = RefactoringTool(get_fixers_from_package("fissix.fixes"))

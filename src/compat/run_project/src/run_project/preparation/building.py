@@ -9,21 +9,21 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Callable, Dict, Set, Tuple
 
-from run_project.checkout.layout import LEFTOVERS, Checkout
-from run_project.checkout.lent import lend
+from planar import PlanarError
+from run_project.checkout.layout import BUILD_AND_VCS_FOLDERS, Checkout
 from run_project.checkout.placement import Placement
-from run_project.errors import BuildError
-from run_project.preparing.python2 import in_python3
-from run_project.preparing.selection import select
-from run_project.stand_ins.folders import PACKAGE_FOLDER, STAND_INS
+from run_project.checkout.substitutes import link_substitutes
+from run_project.preparation.python2 import to_python3
+from run_project.preparation.selection import select_packages
+from run_project.stand_ins import PACKAGE_FOLDER, STAND_INS
 
 FRESH_CLONE = PACKAGE_FOLDER / "cmake" / "fresh_clone.cmake"
 # A bound on how many packages may turn out one after the other not to be configurable.
-CONFIGURATIONS = 20
+MAX_CONFIGURATIONS = 20
 MODEL_PATH = "GAZEBO_MODEL_PATH"
 # What authors set in a file of their home, and what it is most often.
-ASSUMED = {"TURTLEBOT3_MODEL": "burger"}
-UNCONFIGURED = "Configuring incomplete"
+DEFAULT_VARIABLES = {"TURTLEBOT3_MODEL": "burger"}
+CONFIGURATION_INCOMPLETE = "Configuring incomplete"
 
 # From one error of CMake to its reason, and to the first of a project's files in its call stack.
 _CMAKE_ERROR = re.compile(r"^CMake Error at ", re.MULTILINE)
@@ -33,6 +33,10 @@ _ABSENT_TARGET = re.compile(r'The dependency target "(\w+)" of target')
 _MISSING_CONFIG = re.compile(r'provided by\s+"(\S+?)"')
 _BROKEN_SOURCE = re.compile(r"^(/\S+?):\d+(?::\d+)?: (?:fatal )?error: (.*)", re.MULTILINE)
 _BROKEN_LINK = re.compile(r"CMakeFiles/(\S+?)\.dir/\S+: (?:in function .*?: )?(undefined reference .*)")
+
+
+class BuildError(PlanarError):
+    """The packages of the project cannot be built."""
 
 
 @dataclass
@@ -47,7 +51,7 @@ class Workspace:
     folder: Path
     checkout: Path
     packages: Dict[str, Path]
-    pretended: Path
+    placeholders: Path
     model_folders: Tuple[Path, ...] = ()
     unbuilt: Set[str] = field(default_factory=set)
     missing: Dict[str, str] = field(default_factory=dict)
@@ -68,9 +72,11 @@ def copy_checkout(checkout: Checkout, placement: Placement, work: Path) -> Works
         target,
         symlinks=True,
         dirs_exist_ok=True,
-        ignore=lambda folder, names: {name for name in LEFTOVERS & set(names) if Path(folder, name).is_dir()},
+        ignore=lambda folder, names: {
+            name for name in BUILD_AND_VCS_FOLDERS & set(names) if Path(folder, name).is_dir()
+        },
     )
-    lend(checkout.lent, target)
+    link_substitutes(checkout.substitutes, target)
     for program in checkout.programs():  # git of some authors does not know that they can be executed
         (target / program).chmod(0o755)
     for missing, found in placement.links.items():
@@ -87,35 +93,35 @@ def copy_checkout(checkout: Checkout, placement: Placement, work: Path) -> Works
     return Workspace(workspace, target, packages, work / "pretended", model_folders)
 
 
-def build(workspace: Workspace, log: Path, say: Callable[[str], None]) -> None:
+def build(workspace: Workspace, log: Path, report: Callable[[str], None]) -> None:
     """Builds all that can be built. Raises BuildError if the workspace cannot even be configured."""
     stand_ins = {folder.name: folder for folder in PACKAGE_FOLDER.parent.iterdir()}
-    selection = select(workspace.packages, stand_ins, _is_there)
+    selection = select_packages(workspace.packages, stand_ins, _is_installed)
     for name in selection.replaced:
         # Ignored by everything that looks for packages, so that ours is found.
         (workspace.packages[name] / "CATKIN_IGNORE").touch()
     workspace.missing.update(selection.replaced)
-    _tell("ours in place of", selection.replaced, say)
-    _leave_out(workspace, selection.unbuilt, say)
+    _report_packages("ours in place of", selection.replaced, report)
+    _exclude(workspace, selection.unbuilt, report)
     for name, users in selection.absent.items():
-        _pretend(workspace, name)
-        say(f"  there is no package {name}; built without it: {', '.join(users)}")
-    _modernize(workspace, say)
-    for _ in range(CONFIGURATIONS):
+        _create_placeholder(workspace, name)
+        report(f"  there is no package {name}; built without it: {', '.join(users)}")
+    _convert_python2(workspace, report)
+    for _ in range(MAX_CONFIGURATIONS):
         output = _catkin_make(workspace, log)
         absent = set(_ABSENT_TARGET.findall(output)) - workspace.absent_targets
         workspace.absent_targets |= absent
         broken = {} if absent else broken_configurations(workspace, output)
         if not (absent or broken):
             break
-        _leave_out(workspace, broken, say)
-    if UNCONFIGURED in output or not (workspace.folder / "devel" / "setup.bash").exists():
+        _exclude(workspace, broken, report)
+    if CONFIGURATION_INCOMPLETE in output or not (workspace.folder / "devel" / "setup.bash").exists():
         raise BuildError(f"the project's workspace could not be configured, see {log}")
     if _failed(output):
         output = _catkin_make(workspace, log)  # messages may be generated later than their users are compiled
     broken = _broken_sources(workspace, output)
     workspace.missing.update(broken)
-    _tell("not compiled:", broken, say)
+    _report_packages("not compiled:", broken, report)
 
 
 def environment(workspace: Workspace) -> Dict[str, str]:
@@ -131,46 +137,46 @@ def environment(workspace: Workspace) -> Dict[str, str]:
     pairs = (entry.partition("=") for entry in output.decode(errors="surrogateescape").split("\0") if entry)
     variables = {name: value for name, _, value in pairs}
     model_path = [variables.get(MODEL_PATH, ""), *map(str, workspace.model_folders)]
-    return {**ASSUMED, **variables, MODEL_PATH: ":".join(filter(None, model_path))}
+    return {**DEFAULT_VARIABLES, **variables, MODEL_PATH: ":".join(filter(None, model_path))}
 
 
-def _is_there(package: str) -> bool:
+def _is_installed(package: str) -> bool:
     folders = (f"share/{package}/cmake", f"lib/cmake/{package}", f"lib/*/cmake/{package}")
     prefixes = [*filter(None, os.environ.get("CMAKE_PREFIX_PATH", "").split(":")), "/usr"]
     return any(any(Path(prefix).glob(folder)) for prefix in prefixes for folder in folders)
 
 
-def _leave_out(workspace: Workspace, reasons: Dict[str, str], say: Callable[[str], None]) -> None:
+def _exclude(workspace: Workspace, reasons: Dict[str, str], report: Callable[[str], None]) -> None:
     workspace.unbuilt.update(reasons)
     workspace.missing.update(reasons)
-    _tell("not built:", reasons, say)
+    _report_packages("not built:", reasons, report)
 
 
-def _tell(what: str, reasons: Dict[str, str], say: Callable[[str], None]) -> None:
+def _report_packages(what: str, reasons: Dict[str, str], report: Callable[[str], None]) -> None:
     for reason in sorted(set(reasons.values())):
         names = sorted(name for name in reasons if reasons[name] == reason)
-        say(f"  {what} {', '.join(names)} ({reason})")
+        report(f"  {what} {', '.join(names)} ({reason})")
 
 
-def _pretend(workspace: Workspace, name: str) -> None:
+def _create_placeholder(workspace: Workspace, name: str) -> None:
     """Lets CMake find an empty package: much of what is asked for is needed to run, or not at all."""
-    folder = workspace.pretended / "share" / name / "cmake"
+    folder = workspace.placeholders / "share" / name / "cmake"
     folder.mkdir(parents=True, exist_ok=True)
     (folder / f"{name}Config.cmake").write_text(f"set({name}_FOUND_CATKIN_PROJECT TRUE)\n")
 
 
-def _modernize(workspace: Workspace, say: Callable[[str], None]) -> None:
+def _convert_python2(workspace: Workspace, report: Callable[[str], None]) -> None:
     """Makes Python 3 of the scripts in Python 2, in the copy."""
     changed = []
     for name in sorted(set(workspace.packages) - set(workspace.missing)):
         for script in sorted(workspace.packages[name].rglob("*.py")):
             source = script.read_text(encoding="utf-8", errors="surrogateescape")
-            text = in_python3(source)
+            text = to_python3(source)
             if text != source:
                 script.write_text(text, encoding="utf-8", errors="surrogateescape")
                 changed.append(script.name)
     if changed:
-        say(f"  in Python 2, made Python 3 of in the copy: {', '.join(changed)}")
+        report(f"  in Python 2, made Python 3 of in the copy: {', '.join(changed)}")
 
 
 def _catkin_make(workspace: Workspace, log: Path) -> str:
@@ -187,7 +193,7 @@ def _catkin_make(workspace: Workspace, log: Path) -> str:
     command += [f"-D{name}_EXECUTABLE={shutil.which('python3')}" for name in ("PYTHON", "Python")]
     command += ["--force-cmake", "--make-args", "-k"]
     variables = {
-        "CMAKE_PREFIX_PATH": f"{STAND_INS}:{os.environ['CMAKE_PREFIX_PATH']}:{workspace.pretended}",
+        "CMAKE_PREFIX_PATH": f"{STAND_INS}:{os.environ['CMAKE_PREFIX_PATH']}:{workspace.placeholders}",
         "LC_ALL": "C",
         "PWD": str(workspace.folder),  # catkin_make goes by it
         "ROS_PARALLEL_JOBS": f"-j{os.cpu_count()}",  # its own default waits while the machine is busy
@@ -219,7 +225,7 @@ def _failed(output: str) -> bool:
 
 
 def broken_configurations(workspace: Workspace, output: str) -> Dict[str, str]:
-    if UNCONFIGURED not in output:
+    if CONFIGURATION_INCOMPLETE not in output:
         return {}
     broken: Dict[str, str] = {}
     for error in _CMAKE_ERROR.split(output)[1:]:

@@ -12,7 +12,7 @@ TIMEOUT = 1.0
 
 
 @dataclass(frozen=True)
-class Motion:
+class DriveState:
     """After a step: pose, velocity, and the wheels' angles, rad, and speeds, rad/s, left and right."""
 
     base_in_odom: Pose2
@@ -21,7 +21,7 @@ class Motion:
     speeds: Tuple[float, float]
 
 
-class Wheels:
+class DifferentialDrive:
     """Keeps the last command for TIMEOUT seconds."""
 
     def __init__(self, model: str, now: float):
@@ -33,7 +33,7 @@ class Wheels:
         """Sets the velocity from now on."""
         self._command, self._commanded_at = twist, now
 
-    def advance(self, now: float) -> Motion:
+    def advance(self, now: float) -> DriveState:
         """Turns the wheels until ``now``, seconds."""
         seconds, self._now = max(0.0, now - self._now), now
         if now - self._commanded_at > TIMEOUT:
@@ -44,4 +44,4 @@ class Wheels:
         self._angles = (self._angles[0] + speeds[0] * seconds, self._angles[1] + speeds[1] * seconds)
         middle = self._base_in_odom @ Pose2(0.0, 0.0, omega * seconds / 2.0)
         self._base_in_odom = middle @ Pose2(v * seconds, 0.0, 0.0) @ Pose2(0.0, 0.0, omega * seconds / 2.0)
-        return Motion(self._base_in_odom, self._command, self._angles, speeds)
+        return DriveState(self._base_in_odom, self._command, self._angles, speeds)

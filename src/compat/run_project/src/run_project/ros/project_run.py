@@ -13,8 +13,8 @@ import psutil
 import rospy
 
 from run_project.ros.observer import Observer
-from run_project.ros.people import Person
-from run_project.ros.processes import program_of, put_spinners_last, waits_for_keys
+from run_project.ros.processes import lower_priority_of_busy_processes, program_of, waits_for_input
+from run_project.ros.scripted_user import ScriptedUser
 from run_project.stand_ins.terminal import WindowLogs
 from supervision.display import Display
 from supervision.errors import LaunchError
@@ -28,11 +28,11 @@ ENTER_SECONDS = 5.0
 SIGINT_SECONDS = 4.0
 # Seconds of wall time without any news, and of simulated time, after which all is done.
 SETTLED_SECONDS = 3.0
-QUIET_SECONDS, QUIET_SIMULATED = 25.0, 30.0
+IDLE_WALL_SECONDS, IDLE_SIMULATED_SECONDS = 25.0, 30.0
 # The same once no node is left that could send a goal: a marker may still be moved.
-UNATTENDED_SECONDS, UNATTENDED_SIMULATED = 8.0, 10.0
+NO_CLIENT_WALL_SECONDS, NO_CLIENT_SIMULATED_SECONDS = 8.0, 10.0
 # The same before the first goal.
-IDLE_SECONDS, IDLE_SIMULATED = 90.0, 60.0
+FIRST_GOAL_WALL_SECONDS, FIRST_GOAL_SIMULATED_SECONDS = 90.0, 60.0
 # Seconds of wall time in which some simulated time has to pass.
 STALLED_SECONDS = 90.0
 # Runs in a project's workspace whenever that is sourced.
@@ -40,7 +40,7 @@ SETUP_TOOL = "_setup_util.py"
 
 
 @dataclass(frozen=True)
-class Job:
+class ProjectCommand:
     """A command in a folder, with an environment; ``work`` is where the project's own files are.
 
     ``prefix``: before a command for it to see the project's folders where its files name them.
@@ -56,17 +56,24 @@ class Job:
 class ProjectRun:
     """Context of a run: entering starts a master, leaving ends every process of the run."""
 
-    def __init__(self, job: Job, logs: Path, parameters: Mapping[str, object], display: Display, deed=None):
-        self._job = job
+    def __init__(
+        self,
+        command: ProjectCommand,
+        logs: Path,
+        parameters: Mapping[str, object],
+        display: Display,
+        procedure=None,
+    ):
+        self._project_command = command
         self._logs = logs
         self._display = display
         self._parameters = parameters
-        self.observer = Observer(self._tell)
-        self.person = None if deed is None else Person(deed, logs.parent, self._tell)
+        self.observer = Observer(self._log_event)
+        self.user = None if procedure is None else ScriptedUser(procedure, logs.parent, self._log_event)
         self._helpers: List[subprocess.Popen] = []
-        self._asking: Set[int] = set()
+        self._waiting_for_input: Set[int] = set()
         self._windows = WindowLogs(logs)
-        self._news_wall = time.monotonic()
+        self._last_event_wall = time.monotonic()
 
     def __enter__(self) -> "ProjectRun":
         adopt_orphans()
@@ -80,18 +87,18 @@ class ProjectRun:
                 rospy.set_param(name, value)
             rospy.init_node("run_project", anonymous=True, disable_signals=True, log_level=rospy.ERROR)
             self.observer.start()
-            if self.person is not None:
-                self.person.start()
+            if self.user is not None:
+                self.user.start()
         except BaseException:
             self.__exit__()
             raise
         return self
 
     def __exit__(self, *_):
-        if self.person is not None:
-            self.person.stop()
+        if self.user is not None:
+            self.user.stop()
         rospy.signal_shutdown("the run is over")
-        others = _others(self._helpers)
+        others = _project_descendants(self._helpers)
         for process in others:
             with contextlib.suppress(psutil.NoSuchProcess):
                 process.send_signal(signal.SIGINT)
@@ -104,7 +111,7 @@ class ProjectRun:
     def environment(self) -> Dict[str, str]:
         """Of what sees the graph as the project does."""
         own = {name: os.environ[name] for name in ("ROS_MASTER_URI", "ROS_LOG_DIR")}
-        return {**self._job.environment, **own}
+        return {**self._project_command.environment, **own}
 
     def record(self, bag: Path) -> None:
         """Records everything but pictures into a bag, from now on."""
@@ -119,9 +126,9 @@ class ProjectRun:
         moved_wall, moved_time = time.monotonic(), -1.0
         while True:
             now = time.monotonic()
-            observer.look_around()
+            observer.discover_topics()
             for window in self._windows.opened():
-                self._tell(f"{observer.simulated_time:7.1f} s  window {window}")
+                self._log_event(f"{observer.simulated_time:7.1f} s  window {window}")
             self._display.show(observer.status())
             if observer.simulated_time != moved_time:
                 moved_wall, moved_time = now, observer.simulated_time
@@ -129,13 +136,13 @@ class ProjectRun:
                 latest_enter = now
                 _press_enter(script)
             own = self._project_processes()
-            put_spinners_last(own)
-            self._tell_who_asks(own)
+            lower_priority_of_busy_processes(own)
+            self._report_waiting_programs(own)
             is_working = bool(own)
             has_worked = has_worked or is_working
             nodes_are_gone = has_worked and not is_working
-            if self._is_done(script.poll() is not None, now - self._news_wall, nodes_are_gone):
-                return self._refusal(script.poll())
+            if self._is_done(script.poll() is not None, now - self._last_event_wall, nodes_are_gone):
+                return self._script_failure(script.poll())
             if now > deadline:
                 return f"not done within {timeout:g} s of wall time"
             if now - moved_wall > STALLED_SECONDS:
@@ -146,40 +153,40 @@ class ProjectRun:
             time.sleep(POLL_SECONDS)
 
     def _is_done(self, script_is_over: bool, quiet_wall: float, nodes_are_gone: bool) -> bool:
-        ledger = self.observer.ledger
-        if self.person is not None:
-            return self.person.is_done
-        if (script_is_over and not _others(self._helpers)) or ledger.two_rounds:
+        record = self.observer.record
+        if self.user is not None:
+            return self.user.is_done
+        if (script_is_over and not _project_descendants(self._helpers)) or record.goals_of_two_rounds:
             return True
         if nodes_are_gone and script_is_over:
-            return quiet_wall > (SETTLED_SECONDS if ledger.goals or ledger.markers else QUIET_SECONDS)
-        quiet_simulated = self.observer.simulated_time - ledger.latest_news
-        if ledger.goals:
-            enough_wall, enough_simulated = QUIET_SECONDS, QUIET_SIMULATED
-            if not self.observer.has_goal_clients and not ledger.is_object_away:
-                enough_wall, enough_simulated = UNATTENDED_SECONDS, UNATTENDED_SIMULATED
-            return ledger.is_quiet and quiet_wall > enough_wall and quiet_simulated > enough_simulated
+            return quiet_wall > (SETTLED_SECONDS if record.goals or record.markers else IDLE_WALL_SECONDS)
+        quiet_simulated = self.observer.simulated_time - record.last_event_time
+        if record.goals:
+            enough_wall, enough_simulated = IDLE_WALL_SECONDS, IDLE_SIMULATED_SECONDS
+            if not self.observer.has_goal_clients and not record.is_object_picked_up:
+                enough_wall, enough_simulated = NO_CLIENT_WALL_SECONDS, NO_CLIENT_SIMULATED_SECONDS
+            return record.all_goals_ended and quiet_wall > enough_wall and quiet_simulated > enough_simulated
         # A goal may still come: bringing up localization and navigation takes a while on a busy machine.
-        return quiet_wall > IDLE_SECONDS and quiet_simulated > IDLE_SIMULATED
+        return quiet_wall > FIRST_GOAL_WALL_SECONDS and quiet_simulated > FIRST_GOAL_SIMULATED_SECONDS
 
-    def _refusal(self, code: Optional[int]) -> Optional[str]:
+    def _script_failure(self, code: Optional[int]) -> Optional[str]:
         """The last words of a script that ended with a code other than 0 before anything had happened."""
-        if not code or self.observer.ledger.goals or self.observer.ledger.markers:
+        if not code or self.observer.record.goals or self.observer.record.markers:
             return None
         lines = (self._logs / "script.log").read_text(errors="replace").split("\n")
         last_words = next((line.strip() for line in reversed(lines) if line.strip()), "it said nothing")
         return f"the script ended with exit code {code}: {last_words}"
 
-    def _tell_who_asks(self, own: List[psutil.Process]) -> None:
+    def _report_waiting_programs(self, own: List[psutil.Process]) -> None:
         for process in own:
             with contextlib.suppress(psutil.Error, OSError):
-                if process.pid not in self._asking and waits_for_keys(process):
-                    self._asking.add(process.pid)
+                if process.pid not in self._waiting_for_input and waits_for_input(process):
+                    self._waiting_for_input.add(process.pid)
                     name = Path(program_of(process.cmdline())).stem
-                    self._tell(f"  {name} waits for something to be typed: --type {name}=TEXT")
+                    self._log_event(f"  {name} waits for something to be typed: --type {name}=TEXT")
 
-    def _tell(self, news: str) -> None:
-        self._news_wall = time.monotonic()
+    def _log_event(self, news: str) -> None:
+        self._last_event_wall = time.monotonic()
         self._display.print(news)
 
     def _start_helper(self, name: str, command: List[str]) -> None:
@@ -197,8 +204,8 @@ class ProjectRun:
     def _start_script(self) -> "subprocess.Popen[bytes]":
         with (self._logs / "script.log").open("w") as log:
             return subprocess.Popen(
-                [*self._job.prefix, *self._job.command],
-                cwd=str(self._job.folder),
+                [*self._project_command.prefix, *self._project_command.command],
+                cwd=str(self._project_command.folder),
                 env=self.environment(),
                 stdin=subprocess.PIPE,
                 stdout=log,
@@ -219,7 +226,7 @@ class ProjectRun:
         for process in psutil.Process().children(recursive=True):
             with contextlib.suppress(psutil.NoSuchProcess):
                 program = program_of(process.cmdline())
-                if str(self._job.work) in program and not program.endswith(SETUP_TOOL):
+                if str(self._project_command.work) in program and not program.endswith(SETUP_TOOL):
                     found.append(process)
         return found
 
@@ -232,7 +239,7 @@ def _press_enter(script: "subprocess.Popen[bytes]") -> None:
             script.stdin.flush()
 
 
-def _others(helpers: List[subprocess.Popen]) -> List[psutil.Process]:
+def _project_descendants(helpers: List[subprocess.Popen]) -> List[psutil.Process]:
     """The processes of the run but for the master's and the recorder's."""
     own = set()
     for helper in helpers:

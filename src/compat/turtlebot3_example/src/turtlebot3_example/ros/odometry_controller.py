@@ -10,21 +10,21 @@ from nav_msgs.msg import Odometry
 from planar import Pose2, Twist2
 from planar_ros.messages.conversion import pose2_from_msg
 from planar_ros.node.last_words import publish_on_shutdown
-from turtlebot3_example.going import velocity_to
+from turtlebot3_example.go_to_pose import velocity_to
 
 RATE, ODOMETRY_SECONDS, POLL_SECONDS = 15.0, 60.0, 0.02
 
 
-class Robot:
+class OdometryController:
     """Told where it is by ``odom``, driven by ``cmd_vel``."""
 
     def __init__(self) -> None:
         self._base: Optional[Pose2] = None
         self._publisher = rospy.Publisher("cmd_vel", Twist, queue_size=5)
         publish_on_shutdown(self._publisher, Twist())
-        rospy.Subscriber("odom", Odometry, self._see, queue_size=1)
+        rospy.Subscriber("odom", Odometry, self._on_odometry, queue_size=1)
 
-    def base(self) -> Pose2:
+    def base_in_odom(self) -> Pose2:
         """Where it is in ``odom``. Raises rospy.ROSException if nobody says so."""
         deadline = time.monotonic() + ODOMETRY_SECONDS
         while self._base is None:
@@ -35,18 +35,20 @@ class Robot:
             time.sleep(POLL_SECONDS)
         return self._base
 
-    def go(self, places: Iterable[Pose2], turns: bool, goes_on: Callable[[], bool] = lambda: True) -> bool:
+    def follow(
+        self, places: Iterable[Pose2], align_yaw: bool, should_continue: Callable[[], bool] = lambda: True
+    ) -> bool:
         """Whether it has been at all places, one after the other, while ``goes_on``."""
         rate = rospy.Rate(RATE)
         for place in places:
-            velocity = velocity_to(self.base(), place, turns)
+            velocity = velocity_to(self.base_in_odom(), place, align_yaw)
             while velocity is not None:
-                if rospy.is_shutdown() or not goes_on():
+                if rospy.is_shutdown() or not should_continue():
                     self.stop()
                     return False
                 self.drive(velocity)
                 rate.sleep()
-                velocity = velocity_to(self.base(), place, turns)
+                velocity = velocity_to(self.base_in_odom(), place, align_yaw)
         self.stop()
         return True
 
@@ -58,5 +60,5 @@ class Robot:
     def stop(self) -> None:
         self.drive(Twist2())
 
-    def _see(self, message: Odometry) -> None:
+    def _on_odometry(self, message: Odometry) -> None:
         self._base = pose2_from_msg(message.pose.pose)

@@ -1,0 +1,35 @@
+import math
+
+import pytest
+
+from planar import Pose2, Twist2
+from turtlebot3_fake.differential_drive import TRACKS, WHEEL_RADIUS, DifferentialDrive
+
+
+def driven(twist, seconds, model="burger"):
+    drive = DifferentialDrive(model, 0.0)
+    for step in range(1, round(seconds * 30) + 1):
+        drive.command(twist, step / 30.0)
+        state = drive.advance(step / 30.0)
+    return state
+
+
+def test_it_goes_straight_as_far_as_it_is_told():
+    state = driven(Twist2(0.2, 0.0), 3.0)
+    assert state.base_in_odom.distance_to(Pose2(0.6, 0.0)) < 1e-9
+    assert state.angles == pytest.approx((0.6 / WHEEL_RADIUS,) * 2)
+
+
+@pytest.mark.parametrize("model", TRACKS)
+def test_it_comes_round_a_circle(model):
+    state = driven(Twist2(0.5 / 3.0, math.tau / 3.0), 3.0, model)
+    assert state.base_in_odom.distance_to(Pose2()) < 1e-6
+    left, right = state.angles
+    assert (right - left) * WHEEL_RADIUS == pytest.approx(math.tau * TRACKS[model])
+
+
+def test_it_stops_a_second_after_the_last_command():
+    drive = DifferentialDrive("burger", 0.0)
+    drive.command(Twist2(0.1, 0.0), 0.0)
+    assert drive.advance(0.9).twist.v == 0.1
+    assert drive.advance(1.1).twist.v == 0.0
