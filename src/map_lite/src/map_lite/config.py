@@ -9,7 +9,14 @@ from planar.config.settings import check
 
 @dataclass(frozen=True)
 class ServerSettings:
-    """Settings of the map server; all but ``frame_id`` are of an image given without YAML (deprecated)."""
+    """Settings of the map server.
+
+    All but ``frame_id`` apply to an image given without YAML (deprecated). Each field is a node parameter;
+    its meaning, unit and bounds are in its ``parameter(...)``.
+
+    Raises:
+        SettingsError: On construction, for a value out of bounds.
+    """
 
     frame_id: str = parameter("map", "frame of the map")
     negate: int = parameter(
@@ -27,7 +34,11 @@ class ServerSettings:
 
 @dataclass(frozen=True)
 class SaverSettings:
-    """Options of the map saver: thresholds of occupied and free cells, in percent."""
+    """Options of the map saver: thresholds of occupied and free cells [percent].
+
+    Raises:
+        SettingsError: On construction, unless 0 <= free < occupied <= 100.
+    """
 
     occupied_at: int = parameter(65, "cells from this value on are occupied", "percent", name="--occ")
     free_at: int = parameter(25, "cells up to this value are free", "percent", name="--free")

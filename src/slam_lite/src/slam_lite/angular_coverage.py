@@ -15,6 +15,12 @@ class AngularCoverage:
     """The sectors around a scan's base in which it has returns."""
 
     def __init__(self, cloud: PointCloud, base_in_track: Pose2):
+        """Record the sectors that a scan covers.
+
+        Args:
+            cloud: Points of the scan, in the base frame.
+            base_in_track: Pose of the base at the scan, in the track frame.
+        """
         self._base_in_track = base_in_track
         self._sectors = np.zeros(_SECTORS, dtype=np.bool_)
         covered = _sectors_of(cloud.points_xy, 0.0, 0.0, 0.0)
@@ -22,7 +28,15 @@ class AngularCoverage:
             self._sectors[(covered + neighbour) % _SECTORS] = True
 
     def unseen_fraction(self, cloud: PointCloud, base_in_track: Pose2) -> float:
-        """Fraction of another scan's points, 0 to 1, in sectors that this scan does not cover."""
+        """Compute which fraction of another scan lies in sectors that this scan does not cover.
+
+        Args:
+            cloud: Points of the other scan, in its base frame.
+            base_in_track: Pose of the base at the other scan, in the track frame.
+
+        Returns:
+            Fraction of the points, 0 to 1; 0 for a scan without points.
+        """
         if len(cloud) == 0:
             return 0.0
         moved = self._base_in_track.inverse() @ base_in_track

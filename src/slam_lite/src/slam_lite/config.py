@@ -36,7 +36,13 @@ WITHOUT_EFFECT = (
 
 @dataclass(frozen=True)
 class MapperSettings:
-    """Settings of scan matching, loop closure and rendering; metres and radians."""
+    """Settings of scan matching, loop closure and rendering, in metres and radians.
+
+    Each field is a node parameter; its meaning, unit and bounds are in its ``parameter(...)``.
+
+    Raises:
+        SettingsError: On construction, for a value out of bounds.
+    """
 
     # Old names of parameters, which are still accepted.
     DEPRECATED_PARAMETERS: ClassVar[Mapping[str, str]] = {
@@ -121,7 +127,11 @@ class MapperSettings:
 
 @dataclass(frozen=True)
 class NodeSettings(MapperSettings):
-    """Settings of the node: those of the mapper, frames, topics and files."""
+    """Settings of the node: those of the mapper, and those of frames, topics and files.
+
+    Raises:
+        SettingsError: On construction, for a value out of bounds or a combination that is not possible.
+    """
 
     map_frame: str = parameter("map", "frame of the map")
     odom_frame: str = parameter("odom", "frame of the odometry")
@@ -154,7 +164,7 @@ class NodeSettings(MapperSettings):
 
     @property
     def extent(self) -> Tuple[float, float, float, float]:
-        """(xmin, ymin, xmax, ymax)."""
+        """Least extent of the published map in the map frame, ``(xmin, ymin, xmax, ymax)`` [m]."""
         return self.xmin, self.ymin, self.xmax, self.ymax
 
 

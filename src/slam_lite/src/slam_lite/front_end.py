@@ -38,13 +38,15 @@ _STEADY_MOTION_VARIANCE = np.array([0.1**2, 0.1**2, 0.15**2])
 
 @dataclass(frozen=True, eq=False)
 class TrackedPose:
-    """The pose of a scan in the track frame, which drifts but never jumps.
+    """Pose of a scan in the track frame, which drifts but never jumps.
 
     Attributes:
         base_in_track: Pose of the base.
-        information: (3, 3), of the pose relative to the local map, along the track's axes.
-        response: Fraction of the scan that the local map explains, 0 to 1.
-        odometry_chi_square: Squared difference of matched and odometric motion in units of its variance.
+        information: (3, 3), of the pose relative to the local map, along the axes of the track frame, 1 / (m,
+            m, rad)^2.
+        response: Fraction of the scan that matches the local map, 0 to 1.
+        odometry_chi_square: Squared difference between matched and odometric motion, in units of its
+            variance.
     """
 
     base_in_track: Pose2
@@ -54,29 +56,58 @@ class TrackedPose:
 
 
 class KeyframeWindow(Protocol):
-    """The keyframes that scans are matched to."""
+    """Keyframes that scans are matched to.
+
+    Attributes:
+        local_map: Points of these keyframes, in the track frame.
+    """
 
     local_map: LocalMap
 
     def update_around(self, base_in_track: Pose2) -> None:
-        """Make ``local_map`` hold the keyframes around a pose."""
+        """Load the keyframes around a pose into ``local_map``.
+
+        Args:
+            base_in_track: Predicted pose of the base at the next scan.
+        """
 
     def unseen_fraction(self, cloud: PointCloud, base_in_track: Pose2) -> float:
-        """Fraction of a scan, 0 to 1, that cannot match because the map never covered its directions."""
+        """Compute which fraction of a scan lies in directions that the map never covered.
+
+        Args:
+            cloud: Points of the scan, in the base frame.
+            base_in_track: Pose of the base at the scan.
+
+        Returns:
+            Fraction of the points, 0 to 1.
+        """
         ...
 
 
 class RecentKeyframes:
-    """The local map of the last keyframes: when ``window_keyframes`` are in it, the older half is dropped."""
+    """Local map of the most recent keyframes, for mapping.
+
+    When it holds ``window_keyframes`` keyframes, the older half is removed.
+    """
 
     def __init__(self, window_keyframes: int):
+        """Create an empty window.
+
+        Args:
+            window_keyframes: Largest number of keyframes in the window.
+        """
         self.local_map = long_range_map()
         self._window_keyframes = window_keyframes
         self._window: Deque[Tuple[PointCloud, Pose2]] = deque()
         self._last_coverage: Optional[AngularCoverage] = None
 
     def add(self, cloud: PointCloud, base_in_track: Pose2) -> None:
-        """Add a keyframe."""
+        """Add a keyframe.
+
+        Args:
+            cloud: Points of the keyframe, in the base frame.
+            base_in_track: Pose of the keyframe in the track frame.
+        """
         self._last_coverage = AngularCoverage(cloud, base_in_track)
         if len(self._window) >= self._window_keyframes:
             for _ in range(len(self._window) // 2):
@@ -100,15 +131,21 @@ class RecentKeyframes:
 
 
 class NearbyKeyframes:
-    """The local map of a finished map's keyframes around the robot; the track frame is the map frame."""
+    """Local map of the keyframes around the robot in a finished map; the track frame is the map frame."""
 
     def __init__(self, clouds: Sequence[PointCloud], poses: np.ndarray):
+        """Set the finished map.
+
+        Args:
+            clouds: Points of all keyframes, each in its base frame.
+            poses: (N, 3), poses of all keyframes in the map frame.
+        """
         self.local_map = long_range_map()
         self._clouds, self._poses = clouds, poses
         self._center: Optional[Pose2] = None
 
     def update_around(self, base_in_track: Pose2) -> None:
-        """Collect the keyframes around the robot, if it has left the middle of the last collection."""
+        """Reload the keyframes around the robot once it has left the middle of the loaded area."""
         if self._center is not None and self._center.distance_to(base_in_track) < 0.5 * _NEARBY_RADIUS:
             return
         self._center = base_in_track
@@ -123,11 +160,11 @@ class NearbyKeyframes:
 
 
 class FrontEnd:
-    """Matches scans to a local map, with odometry as prediction and prior.
+    """Scan-to-map tracking, with odometry as prediction and prior.
 
     Attributes:
-        odometry_is_stuck: Odometry stands still while the scans move; the motion is then predicted to go on
-            as before.
+        odometry_is_stuck: Whether odometry stands still while the scans move; the motion is then predicted to
+            continue as before.
     """
 
     def __init__(
@@ -136,9 +173,9 @@ class FrontEnd:
         """Create the scan matcher.
 
         Args:
-            settings: Of the matcher and of odometry's errors.
-            keyframes: What scans are matched to.
-            base_in_track: Pose at the first scan; default: the odometry pose.
+            settings: Settings of the matcher and of the odometry error model.
+            keyframes: Keyframes that scans are matched to.
+            base_in_track: Pose of the base at the first scan; by default the odometry pose.
 
         Raises:
             MatchingError: If a custom matcher cannot be created.
@@ -158,8 +195,11 @@ class FrontEnd:
         """Match one scan.
 
         Args:
-            base_in_odom: Odometry at the scan.
-            cloud: The scan's points in the base frame.
+            base_in_odom: Odometry pose of the base at the scan.
+            cloud: Points of the scan, in the base frame.
+
+        Returns:
+            Pose of the base in the track frame.
 
         Raises:
             MatchingError: If a custom matcher fails; the front end is unchanged then.
@@ -190,7 +230,14 @@ class FrontEnd:
         return TrackedPose(match.base_pose, information, match.response, chi_square)
 
     def relocalize(self, cloud: PointCloud) -> bool:
-        """Whether a scan shows that the robot is still where it was; if so, it is tracked from there."""
+        """Check whether a scan matches where the robot was last, and continue tracking from there if so.
+
+        Args:
+            cloud: Points of the scan, in the base frame.
+
+        Returns:
+            Whether it matches.
+        """
         last_in_track = self._last_in_track
         if last_in_track is None or self._keyframes.local_map.is_empty:
             return False

@@ -1,6 +1,6 @@
-"""Keyframes: the scans that become nodes of the pose graph, and those that later sessions make redundant.
+"""Selection of keyframes, and removal of those that later sessions make redundant.
 
-A keyframe of an older session is redundant if nearly all that it saw has been seen often enough since,
+A keyframe of an older session is redundant if newer keyframes cover nearly all that it saw often enough,
 whether the obstacles are still there or not. So a map grows with the area seen, not with the number of
 visits.
 """
@@ -26,11 +26,11 @@ _MARGIN = 3
 
 
 def is_keyframe(base_in_last_keyframe: Optional[Pose2], settings: MapperSettings) -> bool:
-    """Whether a scan becomes a keyframe: the first one, and whenever the robot has moved or turned enough.
+    """Check whether a scan becomes a keyframe: the first one, and each after enough motion or rotation.
 
     Args:
-        base_in_last_keyframe: Robot pose relative to the last keyframe, None if there is none yet.
-        settings: ``keyframe_distance`` and ``keyframe_angle``.
+        base_in_last_keyframe: Pose of the base in the last keyframe; None if there is none yet.
+        settings: Thresholds ``keyframe_distance`` [m] and ``keyframe_angle`` [rad].
     """
     if base_in_last_keyframe is None:
         return True
@@ -40,7 +40,14 @@ def is_keyframe(base_in_last_keyframe: Optional[Pose2], settings: MapperSettings
 
 
 def prune_keyframes(state: MapState) -> MapState:
-    """Return the state without the redundant keyframes of older sessions."""
+    """Remove the redundant keyframes of older sessions.
+
+    Args:
+        state: State with the keyframes of all sessions.
+
+    Returns:
+        State with the other keyframes, between which edges keep the information of the removed ones.
+    """
     if len(state.poses) == 0 or (state.sessions == state.sessions[-1]).all():
         return state
     kept = np.flatnonzero(_is_needed(state.beams, state.poses, state.sessions == state.sessions[-1]))

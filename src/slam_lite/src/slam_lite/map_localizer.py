@@ -1,4 +1,4 @@
-"""Localization in a finished map (localization_only): the robot is tracked, the map stays unchanged."""
+"""Localization in a finished map (localization_only), which stays unchanged."""
 
 from typing import Optional
 
@@ -16,16 +16,16 @@ from slam_lite.state import MapState
 
 
 class MapLocalizer:
-    """Tracks the robot in a finished map."""
+    """Tracks the robot in a finished map by scan matching."""
 
     def __init__(self, settings: MapperSettings, state: MapState, base_in_map: Optional[Pose2] = None):
-        """Load the map's keyframes.
+        """Load the keyframes of the map.
 
         Args:
-            settings: Of matching.
+            settings: Settings of scan matching.
             state: The map.
-            base_in_map: Robot pose; by default the first scan is searched in the map, and the last pose of
-                the state is used if that fails.
+            base_in_map: Initial robot pose. By default the first scan is searched in the map; if that fails,
+                the last pose of ``state`` is used.
         """
         self._settings = settings
         self._state = state
@@ -35,13 +35,24 @@ class MapLocalizer:
         self._needs_relocalization = base_in_map is None
 
     def set_pose(self, base_in_map: Pose2) -> None:
-        """Set the robot pose, which may be off by a few decimetres."""
+        """Set the robot pose.
+
+        Args:
+            base_in_map: Pose of the base in the map frame, to within a few decimetres.
+        """
         keyframes = NearbyKeyframes(self._state.clouds, self._state.poses)
         self._front_end = FrontEnd(self._settings, keyframes, base_in_map)
         self._needs_relocalization = False
 
     def insert(self, base_in_odom: Pose2, scan: Scan) -> Optional[PoseUpdate]:
-        """Track one scan; None if it was dropped because the robot stands still.
+        """Track one scan.
+
+        Args:
+            base_in_odom: Odometry pose of the base at the scan.
+            scan: The scan.
+
+        Returns:
+            Pose at the scan; None if it was dropped because the robot stands still.
 
         Raises:
             PlanarError: As ``Mapper.insert``.

@@ -1,4 +1,4 @@
-"""The mapper: scans and odometry in, poses and a map out."""
+"""The mapper: builds a map from scans and odometry."""
 
 import math
 from dataclasses import dataclass, replace
@@ -26,15 +26,15 @@ _MAX_DISTANCE_FROM_MAP = 200.0
 
 @dataclass(frozen=True, eq=False)
 class PoseUpdate:
-    """The pose at which a scan was taken.
+    """Robot pose at a scan.
 
     Attributes:
         base_in_map: Robot pose in the map frame.
         odom_in_map: Odometry frame in the map frame.
-        information: (3, 3), of the pose relative to the keyframes around, 1 / (m, m, rad)^2.
-        response: Fraction of the scan that these keyframes explain, 0 to 1.
-        odometry_chi_square: Squared difference of matched and odometric motion in units of its variance: 3 on
-            average if odometry is as accurate as its settings state.
+        information: (3, 3), of the pose relative to the keyframes nearby, 1 / (m, m, rad)^2.
+        response: Fraction of the scan that matches these keyframes, 0 to 1.
+        odometry_chi_square: Squared difference between matched and odometric motion, in units of its
+            variance; its mean is 3 if odometry is as accurate as its settings state.
     """
 
     base_in_map: Pose2
@@ -46,7 +46,7 @@ class PoseUpdate:
 
 @dataclass(frozen=True, eq=False)
 class MapUpdate(PoseUpdate):
-    """The pose at which a scan was taken, also relative to a keyframe.
+    """Robot pose at a scan, also relative to a keyframe.
 
     Attributes:
         keyframe: Index of the latest keyframe.
@@ -71,7 +71,7 @@ class Mapper:
         """Create a mapper without keyframes.
 
         Args:
-            settings: Of matching, loop closure and rendering.
+            settings: Settings of matching, loop closure and rendering.
             deferred: Whether the caller closes loops, by running ``closure_task()`` and passing its result to
                 ``apply_closures``, for example in another thread. By default ``insert`` does it.
         """
@@ -99,16 +99,16 @@ class Mapper:
         """Insert one scan.
 
         Args:
-            base_in_odom: Odometry at the scan.
+            base_in_odom: Odometry pose of the base at the scan.
             scan: The scan.
 
         Returns:
-            The scan's pose; None if it was dropped because the robot stands still.
+            Pose at the scan; None if it was dropped because the robot stands still.
 
         Raises:
-            OutOfRangeError: If odometry is out of range, or leads to a pose in the map that is; the scan
-                leaves nothing in the map then.
-            MatchingError: If a custom matcher fails; likewise.
+            OutOfRangeError: Odometry or the resulting pose in the map is out of range; the map is unchanged
+                then.
+            MatchingError: A custom matcher fails; the map is unchanged then.
         """
         check_pose(base_in_odom, "odometry")
         if self._motion_filter.is_similar(base_in_odom, scan.stamp) and not self._front_end.odometry_is_stuck:
@@ -128,7 +128,7 @@ class Mapper:
         return self._update(base_in_odom, tracked, is_new_keyframe)
 
     def closure_task(self) -> Optional[ClosureTask]:
-        """Return the search for loop closures that is due, None if none is."""
+        """Return the loop closure search that is due, None if none is."""
         settings = self._settings
         if not settings.close_loops or len(self._back_end) < self._searched_count + settings.closure_interval:
             return None
@@ -136,11 +136,15 @@ class Mapper:
         return self._back_end.closure_task()
 
     def apply_closures(self, result: ClosureResult) -> None:
-        """Apply the result of a closure task."""
+        """Apply the result of a closure task.
+
+        Args:
+            result: Result of the last task from ``closure_task``.
+        """
         self._back_end.apply_closures(result)
 
     def run_final_optimization(self) -> None:
-        """Optimize to convergence, and close loops along revisited segments, after the last scan."""
+        """Optimize to convergence and close loops along revisited segments, after the last scan."""
         self._back_end.run_final_optimization()
 
     @property
@@ -169,11 +173,11 @@ class Mapper:
         return self.grid_in_bands().joined()
 
     def grid_in_bands(self) -> BandedGrid:
-        """Return the same map, rendered band by band on use: it never takes the memory of all its cells."""
+        """Render the map band by band on use, so that its cells are never all in memory."""
         return render_in_bands(self.evidence(), self._settings.resolution, self._settings.occupied_threshold)
 
     def state(self) -> MapState:
-        """Return all that is needed to resume later."""
+        """Return the state that is needed to resume later."""
         return MapState(
             tuple(self._back_end.clouds),
             tuple(self._beams),
@@ -187,13 +191,13 @@ class Mapper:
         """Resume from a state in a new session.
 
         Args:
-            state: Of an earlier mapper.
+            state: State of an earlier mapper.
             base_in_map: Approximate robot pose. By default the first scan is searched in the map, first near
-                the robot's last pose. If that fails, a separate trajectory starts beside the map, to be
+                the robot's last pose. If that fails, a separate trajectory starts beside the map, and is
                 joined with it when a place is recognized.
 
         Raises:
-            OutOfRangeError: If ``base_in_map`` is too far from all keyframes; the mapper is unchanged then.
+            OutOfRangeError: ``base_in_map`` is too far from all keyframes; the mapper is unchanged then.
         """
         state = prune_keyframes(state)
         if base_in_map is not None:
@@ -213,9 +217,13 @@ class Mapper:
         self._start_trajectory(start)
 
     def resume_near(self, state: MapState, base_in_map: Pose2) -> None:
-        """Resume from a recent state, with the robot within decimetres of ``base_in_map``, as after a crash.
+        """Resume from a recent state at a known pose, for example after a crash.
 
-        The first scan refines the pose, if it matches there.
+        The first scan refines the pose if it matches there.
+
+        Args:
+            state: State of an earlier mapper.
+            base_in_map: Robot pose in the map frame, to within a few decimetres.
         """
         self.resume(replace(state, base_in_map=base_in_map))
         self._search_near_prior_only = True
@@ -284,7 +292,16 @@ class Mapper:
 
 
 def ranges_of(scan: Scan, settings: MapperSettings, no_return: NoReturnDetector) -> Tuple[float, float]:
-    """Return maxRange and maxUrange for a scan, metres."""
+    """Compute the effective ``maxRange`` and ``maxUrange`` for a scan.
+
+    Args:
+        scan: The scan.
+        settings: ``max_range`` and ``usable_range``, where 0 selects the default.
+        no_return: Detector of readings that mean "no return".
+
+    Returns:
+        Ranges above which readings are dropped, and above which they mark no obstacle [m].
+    """
     max_range = settings.max_range or min(scan.range_max - 0.01, no_return.distance)
     return max_range, settings.usable_range or max_range
 

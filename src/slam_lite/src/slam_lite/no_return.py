@@ -1,7 +1,7 @@
-"""Range readings that stand for "no return", learned from how often they occur.
+"""Detection of range readings that mean "no return", from how often they occur.
 
-Some lasers report more than their ``range_max`` where nothing is hit, some a little less, and some another
-constant. Taken as hits, such readings form a circle that moves along with the robot.
+Where nothing is hit, some lasers report more than their ``range_max``, some a little less, and some another
+constant. Interpreted as hits, such readings form a circle that moves with the robot.
 """
 
 import math
@@ -20,7 +20,7 @@ class NoReturnDetector:
     """Histogram of the far readings of scans made at different places.
 
     Attributes:
-        distance: Readings from this range on mean "no return" [m]; infinite if there is no such constant.
+        distance: Range from which on readings mean "no return" [m]; infinite if there is no such constant.
     """
 
     def __init__(self) -> None:
@@ -28,7 +28,11 @@ class NoReturnDetector:
         self.distance = math.inf
 
     def add(self, ranges: np.ndarray) -> None:
-        """Count the readings (N,), metres, of one scan."""
+        """Count the readings of one scan.
+
+        Args:
+            ranges: (N,) [m]; readings that are not finite are ignored.
+        """
         far = ranges[np.isfinite(ranges) & (ranges > _NEAREST) & (ranges < _FARTHEST)]
         if len(far) == 0:
             return

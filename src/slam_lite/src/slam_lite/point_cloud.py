@@ -16,12 +16,12 @@ _MAX_CHORD, _ON_LINE, _PARALLEL = 12.0, 0.1, 0.98
 
 @dataclass(frozen=True, eq=False)
 class PointCloud:
-    """The points of one scan, in the base frame.
+    """Points of one scan, in the base frame.
 
     Attributes:
-        points_xy: float32 (N, 2), metres, downsampled to an even spacing.
-        normals_xy: float32 (N, 2), surface normals: the unit normal of the line through each point's
-            neighbours, towards the laser; (0, 0) where the neighbours do not form a line.
+        points_xy: float32 (N, 2), downsampled to an even spacing [m].
+        normals_xy: float32 (N, 2), unit normal of the line through each point's neighbours, towards the
+            laser; (0, 0) where the neighbours do not form a line.
     """
 
     points_xy: np.ndarray
@@ -32,11 +32,11 @@ class PointCloud:
 
 
 def point_cloud_of(scan: Scan, usable_range: float, spacing: float) -> PointCloud:
-    """Convert a scan.
+    """Convert a scan to points with normals.
 
     Args:
         scan: The scan.
-        usable_range: Larger readings are dropped [m].
+        usable_range: Range above which readings are dropped [m].
         spacing: Least distance between consecutive points [m].
     """
     mount = scan.laser_in_base
@@ -55,7 +55,14 @@ def point_cloud_of(scan: Scan, usable_range: float, spacing: float) -> PointClou
 
 
 def merge_clouds(parts: Iterable[Tuple[PointCloud, Pose2]]) -> PointCloud:
-    """Merge clouds, each given with its pose, in the frame of the poses."""
+    """Merge clouds.
+
+    Args:
+        parts: Clouds in their base frames, each with the pose of its base in a common frame.
+
+    Returns:
+        Cloud in the common frame.
+    """
     points, normals = [], []
     for cloud, pose in parts:
         points.append(pose.transform_points(cloud.points_xy))
@@ -64,7 +71,12 @@ def merge_clouds(parts: Iterable[Tuple[PointCloud, Pose2]]) -> PointCloud:
 
 
 def downsampled(cloud: PointCloud, count: int) -> PointCloud:
-    """Keep every n-th point, so that about ``count`` are left, or all if there are fewer."""
+    """Reduce a cloud to every n-th point.
+
+    Args:
+        cloud: Cloud to reduce.
+        count: Approximate number of points to keep; smaller clouds keep all.
+    """
     step = max(1, len(cloud) // count)
     return PointCloud(
         np.ascontiguousarray(cloud.points_xy[::step]), np.ascontiguousarray(cloud.normals_xy[::step])
@@ -72,9 +84,13 @@ def downsampled(cloud: PointCloud, count: int) -> PointCloud:
 
 
 def interpolated(cloud: PointCloud, spacing: float) -> PointCloud:
-    """Add points, ``spacing`` metres apart, between neighbours on the same line.
+    """Add points between neighbours on the same line.
 
-    A distant wall is a row of points whose gaps move along with the robot; the wall itself has no gaps.
+    The points on a distant wall have gaps, which move with the robot, although the wall has none.
+
+    Args:
+        cloud: Points of one scan, in order of the beams.
+        spacing: Distance between added points [m].
     """
     points_xy, normals_xy = _interpolated(cloud.points_xy, cloud.normals_xy, spacing)
     return PointCloud(points_xy, normals_xy)

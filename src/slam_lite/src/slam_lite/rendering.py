@@ -1,9 +1,9 @@
-"""Rendering the map: the beams of all keyframes as evidence of free and occupied cells.
+"""Rendering of the map: the beams of all keyframes as evidence of free and occupied cells.
 
 A cell is occupied if the share of hits among the beams that reached it exceeds a threshold (Haehnel's
 counting model as used by gmapping). Counts are sums over scans, so a scan whose pose has changed is
-subtracted and added again. A map that is rendered only once is rendered in bands, which never take the memory
-of all of it.
+subtracted and added again. A map that is rendered only once is rendered in bands, so that its counts are
+never all in memory.
 """
 
 import math
@@ -30,7 +30,7 @@ _OVERRIDING_VISITS = 5
 
 @dataclass(frozen=True, eq=False)
 class ScanBeams:
-    """The beams of one scan in the base frame; all of them clear the cells up to their ends.
+    """Beams of one scan in the base frame; all of them clear the cells up to their ends.
 
     Attributes:
         laser_xy: (2,), start of all beams [m].
@@ -44,12 +44,12 @@ class ScanBeams:
 
 
 def beams_of(scan: Scan, max_range: float, usable_range: float) -> ScanBeams:
-    """Convert a scan; "no return" (inf) counts as range_max.
+    """Convert a scan to beams; "no return" (inf) counts as ``range_max``.
 
     Args:
         scan: The scan.
-        max_range: Readings above it are dropped [m].
-        usable_range: Readings above it clear up to it and mark nothing [m].
+        max_range: Range above which readings are dropped [m].
+        usable_range: Range up to which readings above it clear cells, without marking an obstacle [m].
     """
     ranges = np.where(np.isposinf(scan.ranges), scan.range_max, scan.ranges).astype(np.float64)
     with np.errstate(invalid="ignore"):
@@ -65,11 +65,11 @@ def beams_of(scan: Scan, max_range: float, usable_range: float) -> ScanBeams:
 
 
 class Evidence(NamedTuple):
-    """What a map is rendered from.
+    """Input of map rendering.
 
     Attributes:
-        beams: Of all keyframes, N.
-        poses: (N, 3), of all keyframes in the map frame.
+        beams: Beams of all keyframes, N.
+        poses: (N, 3), poses of all keyframes in the map frame.
         older: Number of keyframes of earlier sessions, which are the first ones.
     """
 
@@ -79,23 +79,38 @@ class Evidence(NamedTuple):
 
 
 class SessionRenderer:
-    """Renders the keyframes of several sessions; what the present one saw often enough overrides the others.
+    """Renders the keyframes of several sessions; the present session overrides earlier ones.
 
-    So furniture that has moved since is at its present place only, however often it was seen elsewhere.
+    It does so in cells that it saw often enough. So furniture that was moved between sessions is only at its
+    present place, however often it was seen elsewhere.
     """
 
     def __init__(self, resolution: float, occupied_threshold: float):
+        """Create a renderer without keyframes.
+
+        Args:
+            resolution: Cell size [m].
+            occupied_threshold: Share of hits, 0 to 1, above which a cell is occupied.
+        """
         self._resolution, self._threshold = resolution, occupied_threshold
         self._before, self._now = (BeamCounter(resolution) for _ in range(2))
 
     def update(self, evidence: Evidence) -> None:
-        """Update the counts; ``evidence.older`` must not change between calls."""
+        """Update the beam counts.
+
+        Args:
+            evidence: Beams and poses of all keyframes; ``evidence.older`` must not change between calls.
+        """
         beams, poses, older = evidence
         self._before.update(beams[:older], poses[:older])
         self._now.update(beams[older:], poses[older:])
 
     def grid(self, extent: Optional[Extent] = None) -> OccupancyGrid:
-        """Return the map, by older sessions where the present one saw too little; at least ``extent``."""
+        """Return the map.
+
+        Args:
+            extent: Least extent of the map, ``(xmin, ymin, xmax, ymax)`` in the map frame [m].
+        """
         now, before = self._now.counts, None if self._before.is_empty else self._before.counts
         box = _box_of(now, before)
         if extent is not None:
@@ -105,9 +120,18 @@ class SessionRenderer:
 
 
 class BeamCounter:
-    """Counts the beams of one session's keyframes per cell."""
+    """Counts the beams of one session's keyframes per cell.
+
+    Attributes:
+        counts: Visits and hits of each cell.
+    """
 
     def __init__(self, resolution: float):
+        """Create counts without keyframes.
+
+        Args:
+            resolution: Cell size [m].
+        """
         self._resolution = resolution
         self._placed: List[np.ndarray] = []
         self.counts = TileCounts(np.zeros(2, dtype=np.int64), (0, 0))
@@ -118,7 +142,12 @@ class BeamCounter:
         return not self._placed
 
     def update(self, beams: Sequence[ScanBeams], poses: np.ndarray) -> None:
-        """Update the counts to the keyframes' present poses (N, 3) in the map frame."""
+        """Recount the keyframes that are new or have moved.
+
+        Args:
+            beams: Beams of all keyframes of the session, N.
+            poses: (N, 3), their present poses in the map frame.
+        """
         changed = [i for i in range(len(beams)) if i >= len(self._placed) or self._has_moved(i, poses[i])]
         if changed:
             bounds = _bounds([beams[i] for i in changed], poses[changed], self._resolution)
@@ -142,13 +171,13 @@ class BeamCounter:
 def render_in_bands(
     evidence: Evidence, resolution: float, occupied_threshold: float, max_cells: int = _BAND_CELLS
 ) -> BandedGrid:
-    """Render the map of a SessionRenderer in bands, each on use, from the beams that reach it.
+    """Render the same map as a SessionRenderer in bands, each computed on use.
 
     Args:
-        evidence: To render.
+        evidence: Beams and poses of all keyframes.
         resolution: Cell size [m].
-        occupied_threshold: Share of hits above which a cell is occupied.
-        max_cells: Of a band; it is at least as high as a tile.
+        occupied_threshold: Share of hits, 0 to 1, above which a cell is occupied.
+        max_cells: Largest number of cells of a band; a band is at least as high as a tile.
     """
     beams, poses, older = evidence
     now = _SessionScans(beams[older:], poses[older:], resolution)
@@ -282,8 +311,9 @@ def expand_to_extent(box: CellBox, extent: Extent, resolution: float) -> CellBox
     """Expand a map as gmapping does.
 
     Args:
-        box: Of the map's cells.
-        extent: Least extent [m], which grows by steps of 10 m where ``box`` is larger.
+        box: Cells of the map.
+        extent: Least extent ``(xmin, ymin, xmax, ymax)`` [m], which grows by steps of 10 m where ``box`` is
+            larger.
         resolution: Cell size [m].
 
     Returns:

@@ -1,4 +1,4 @@
-"""The trajectory of a log: a pose for every scan, also of those that the mapper dropped."""
+"""The trajectory of a log: the pose of every scan, also of those that the mapper dropped."""
 
 from array import array
 from typing import Optional
@@ -12,7 +12,7 @@ _COLUMNS = 8
 
 
 class ScanTrajectory:
-    """Collects the poses of scans relative to keyframes, whose poses are final only after the last scan."""
+    """Poses of scans relative to keyframes, whose poses are final only after the last scan."""
 
     def __init__(self) -> None:
         # Stamp, keyframe, base in keyframe and laser in base of each scan; a flat array of numbers takes a
@@ -27,9 +27,10 @@ class ScanTrajectory:
         """Add a scan.
 
         Args:
-            base_in_odom: Odometry at the scan.
+            base_in_odom: Odometry pose of the base at the scan.
             scan: The scan.
-            update: The mapper's result for it; None if it was dropped: odometry extends the last pose.
+            update: Result of the mapper for the scan; None if it was dropped: then odometry extends the last
+                pose.
         """
         if update is not None:
             self._odom_in_keyframe = update.base_in_keyframe @ base_in_odom.inverse()
@@ -41,11 +42,11 @@ class ScanTrajectory:
         """Return the trajectory in the map frame.
 
         Args:
-            keyframe_poses: (K, 3), poses of all keyframes in the map frame.
+            keyframe_poses: (K, 3), final poses of all keyframes in the map frame.
             of_laser: Whether to return the poses of the laser instead of the base.
 
         Returns:
-            (N, 4), rows ``[t, x, y, yaw]``.
+            (N, 4), rows ``[t, x, y, yaw]`` [s, m, m, rad].
         """
         rows = np.empty((len(self), 4))
         for row, visit in zip(rows, np.array(self._rows).reshape(-1, _COLUMNS)):

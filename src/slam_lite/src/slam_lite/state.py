@@ -18,18 +18,18 @@ VERSION = 2
 
 
 class StateFileError(PlanarError):
-    """A state file cannot be read; the text names the file and the reason."""
+    """A state file cannot be read; the text states the file and the reason."""
 
 
 @dataclass(frozen=True, eq=False)
 class MapState:
-    """All that is needed to resume mapping.
+    """State that is needed to resume mapping.
 
     Attributes:
-        clouds: Points of all keyframes, N.
-        beams: Beams of all keyframes.
-        poses: (N, 3), of all keyframes in the map frame.
-        edges: Of the pose graph.
+        clouds: Points of all keyframes, each in its base frame, N.
+        beams: Beams of all keyframes, N.
+        poses: (N, 3), poses of all keyframes in the map frame.
+        edges: Edges of the pose graph.
         base_in_map: Robot pose at the last scan.
         sessions: (N,), number of each keyframe's session, ascending.
     """
@@ -43,15 +43,16 @@ class MapState:
 
 
 def save_state(state: MapState, path, is_compressed: bool = True) -> None:
-    """Write a state file, whole or not at all.
+    """Write a state file, completely or not at all.
 
     Args:
-        state: To write.
-        path: Of the file.
-        is_compressed: Without compression it takes a tenth of the time, and a fifth more space.
+        state: State to write.
+        path: State file.
+        is_compressed: Whether to compress it; uncompressed, writing takes a tenth of the time and a fifth
+            more space.
 
     Raises:
-        FileWriteError: If it cannot be written.
+        FileWriteError: The file cannot be written.
     """
     file = io.BytesIO()
     save = np.savez_compressed if is_compressed else np.savez
@@ -75,7 +76,14 @@ def save_state(state: MapState, path, is_compressed: bool = True) -> None:
 
 
 def load_state(path) -> MapState:
-    """Read a file of ``save_state``. Raises StateFileError."""
+    """Read a file written by ``save_state``.
+
+    Args:
+        path: State file.
+
+    Raises:
+        StateFileError: The file cannot be read.
+    """
     try:
         table = read_arrays(path)
     except FileNotFoundError:

@@ -1,4 +1,4 @@
-"""Beam counts per cell, in tiles that exist only where beams have been: of a large site little is seen."""
+"""Beam counts per cell, in tiles that are allocated only where beams have been."""
 
 import math
 from typing import NamedTuple, Optional, Tuple
@@ -13,7 +13,14 @@ TILE, _FIRST_TILES = 64, 256
 
 
 class CellBox(NamedTuple):
-    """A rectangle of cells: first row and column, from the map's origin, and the ones after the last."""
+    """Rectangle of cells, counted from the map's origin.
+
+    Attributes:
+        row: First row.
+        col: First column.
+        end_row: Row after the last one.
+        end_col: Column after the last one.
+    """
 
     row: int
     col: int
@@ -27,7 +34,7 @@ class CellBox(NamedTuple):
 
 
 def bounding_box(*boxes: Optional[CellBox]) -> Optional[CellBox]:
-    """The smallest box around all boxes that are not None."""
+    """Compute the smallest box around all boxes that are not None; None if there are none."""
     firsts, ends = [box[:2] for box in boxes if box], [box[2:] for box in boxes if box]
     return CellBox(*map(min, *firsts, *firsts), *map(max, *ends, *ends)) if firsts else None
 
@@ -43,9 +50,9 @@ class TileCounts:
         """Create counts of 0.
 
         Args:
-            corner: As the attribute.
+            corner: (2,), column and row of the first tile, in tiles from the map's origin.
             shape: Rows and columns of tiles; beams outside of them are not counted.
-            first_row: Of the tiles, from the corner.
+            first_row: First row of tiles to count, from the corner.
         """
         self.corner = corner
         self._first_row = first_row
@@ -55,7 +62,12 @@ class TileCounts:
         self._index = np.full(shape, -1, dtype=np.int32)
 
     def cover(self, lowest: np.ndarray, highest: np.ndarray) -> None:
-        """Extend the area to the tiles from ``lowest`` (2,), column and row, to before ``highest`` (2,)."""
+        """Extend the area.
+
+        Args:
+            lowest: (2,), column and row of the first tile to cover.
+            highest: (2,), column and row after the last tile.
+        """
         if self._index.size:
             end = self.corner + self._index.shape[::-1]
             lowest, highest = np.minimum(lowest, self.corner), np.maximum(highest, end)
@@ -70,8 +82,8 @@ class TileCounts:
         """Count the beams of a scan.
 
         Args:
-            start: (2,), of all beams, cells from the map's origin.
-            ends: (N, 2), the same.
+            start: (2,), column and row at which all beams start, in fractional cells from the map's origin.
+            ends: (N, 2), columns and rows at which they end, in the same unit.
             marks: (N,), whether each beam marks an obstacle at its end.
             amount: 1 to add the beams, -1 to remove them.
         """
@@ -108,9 +120,9 @@ class TileCounts:
 
         Args:
             cells: (rows, cols) of the box; FREE or OCCUPIED is written into them.
-            box: Of the cells.
-            threshold: Share of hits above which a cell is occupied.
-            min_visits: Cells with fewer visits are not changed.
+            box: Position of the cells.
+            threshold: Share of hits, 0 to 1, above which a cell is occupied.
+            min_visits: Visits below which a cell is not changed.
         """
         col, row = (box.col, box.row) - (self.corner + [0, self._first_row]) * TILE
         _classify(self._tiles, self._index, threshold, min_visits, row, col, cells)

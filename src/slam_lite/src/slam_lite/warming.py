@@ -1,4 +1,4 @@
-"""Ahead-of-time compilation of the kernels, so that the first scans do not wait for numba."""
+"""Ahead-of-time compilation of the numba kernels, so that they do not delay the first scans."""
 
 import math
 
@@ -15,10 +15,10 @@ def warm_up(matcher_plugin: str = "") -> None:
     """Map a small simulated room, so that each kernel runs once.
 
     Args:
-        matcher_plugin: Custom scan matcher to run.
+        matcher_plugin: Custom scan matcher to run as well.
 
     Raises:
-        MatchingError: If the custom matcher fails here.
+        MatchingError: The custom matcher fails.
     """
     mapper = Mapper(MapperSettings(closure_min_detour=1.0, matcher_plugin=matcher_plugin))
     angles = np.linspace(-math.pi, math.pi, 181)

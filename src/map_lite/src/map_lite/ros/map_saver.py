@@ -27,6 +27,7 @@ class NothingToSaveError(PlanarError):
 
 
 def main():
+    """Run the node ``map_saver``."""
     parser = _parser()
     arguments = parser.parse_args(rospy.myargv()[1:])
     try:

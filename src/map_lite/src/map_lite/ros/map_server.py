@@ -31,6 +31,14 @@ class MapServerNode:
     """Publishes one map, latched, and serves it; the service change_map replaces it."""
 
     def __init__(self, arguments):
+        """Load the map, publish it and advertise the services.
+
+        Args:
+            arguments: Result of ``parse_arguments``.
+
+        Raises:
+            MapFileError: The map cannot be loaded.
+        """
         self._settings = read_settings(ServerSettings)
         grid = self._load(arguments)
         self._map_publisher = rospy.Publisher("map", OccupancyGridArrays, queue_size=1, latch=True)
@@ -75,5 +83,6 @@ def _package_folder(package: str) -> str:
 
 
 def main():
+    """Run the node ``map_server``."""
     arguments = parse_arguments(rospy.myargv()[1:])
     run("map_server", lambda: MapServerNode(arguments))

@@ -20,24 +20,31 @@ _AVERAGE_YAW, _GUESSED_YAW = 0.024, 0.2
 def shortest_paths(
     start: int, count: int, edges: Edges, lengths: np.ndarray, limit: float = np.inf
 ) -> Tuple[np.ndarray, np.ndarray]:
-    """Find the shortest paths from one node to all (Dijkstra).
+    """Find the shortest paths from one node to all others (Dijkstra).
 
     Args:
         start: Index of the node.
         count: Number of nodes, N.
-        edges: Of the graph.
-        lengths: (E,), of the edges.
-        limit: Longer paths count as infinite.
+        edges: Edges of the graph, E.
+        lengths: (E,), length of each edge.
+        limit: Longest path to search; nodes farther away get an infinite length.
 
     Returns:
-        Lengths (N,), and the predecessor (N,) of each node on its path.
+        Lengths (N,) of the paths, and the predecessor (N,) of each node on its path, negative if there is
+        none.
     """
     graph = csr_matrix((lengths, tuple(edges.nodes.T)), shape=(count, count))
     return dijkstra(graph, directed=False, indices=start, return_predecessors=True, limit=limit)
 
 
 def with_average_slip(edges: Edges) -> Edges:
-    """Return the edges with the average covariance of loose steps, of which few have slipped."""
+    """Return the edges with an average heading variance for steps with possible wheel slip.
+
+    Few of these steps have slipped, so the sum of their own variances would overestimate the drift.
+
+    Args:
+        edges: Edges of the graph.
+    """
     information, yaw = edges.information.copy(), edges.information[:, 2, 2]
     is_loose = ~edges.is_loop & (yaw < _AVERAGE_YAW**-2) & (yaw > _GUESSED_YAW**-2)
     information[is_loose, 2, 2] = _AVERAGE_YAW**-2
@@ -45,7 +52,14 @@ def with_average_slip(edges: Edges) -> Edges:
 
 
 def variances_xy(edges: Edges) -> np.ndarray:
-    """Largest variance (E,) of position over all directions, of each edge [m^2]."""
+    """Compute the largest position variance of each edge over all directions.
+
+    Args:
+        edges: Edges of the graph, E.
+
+    Returns:
+        (E,) [m^2].
+    """
     along_x, along_y, mixed = (edges.information[:, i, j] for i, j in ((0, 0), (1, 1), (0, 1)))
     least = 0.5 * (along_x + along_y) - np.hypot(0.5 * (along_x - along_y), mixed)
     return 1.0 / np.maximum(least, _LEAST_INFORMATION)
@@ -56,16 +70,17 @@ def drift_along(
 ) -> Tuple[np.ndarray, np.ndarray]:
     """Propagate errors along the shortest paths.
 
-    An error in heading rotates all that follows: it counts in proportion to the straight distance from there.
+    An error in heading rotates everything after it, so it counts in proportion to the straight distance from
+    where it occurs.
 
     Args:
-        paths: (N,), lengths by ``shortest_paths``.
-        before: (N,), predecessors by ``shortest_paths``.
-        poses: (N, 3).
-        edges: Of the graph.
+        paths: (N,), lengths from ``shortest_paths``.
+        before: (N,), predecessors from ``shortest_paths``.
+        poses: (N, 3), poses of the nodes in the map frame.
+        edges: Edges of the graph.
 
     Returns:
-        Standard deviations (N,) of position [m] and heading [rad] relative to the paths' start.
+        Standard deviations (N,) of position [m] and of heading [rad], relative to the start of the paths.
     """
     first, second = edges.nodes.T
     xy = variances_xy(edges)

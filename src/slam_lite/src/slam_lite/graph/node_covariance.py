@@ -12,22 +12,35 @@ from slam_lite.graph.pose_graph import Edge, Edges, factorize, normal_equations,
 
 
 class NodeCovariance:
-    """Covariance of one node relative to others, by all edges of a settled graph, loops included.
+    """Covariance of one node relative to others, from all edges of an optimized graph including loop edges.
 
     After M. Kaess and F. Dellaert, "Covariance recovery from a square root information matrix for data
     association", Robotics and Autonomous Systems 2009.
     """
 
     def __init__(self, poses: np.ndarray, edges: Edges, node: int):
-        """``poses``: (N, 3)."""
+        """Set the graph; it is factorized on first use.
+
+        Args:
+            poses: (N, 3), optimized poses of the nodes in the map frame.
+            edges: Edges of the graph.
+            node: Index of the node.
+        """
         self._poses, self._edges, self._node = poses, edges, node
         self._others = np.delete(np.arange(3 * len(poses)), np.arange(3 * node, 3 * node + 3))
         self._factors: Optional[SuperLU] = None
 
     def is_outlier(self, edge: Edge, max_chi_square: float) -> bool:
-        """Whether an edge to the node that is not in the graph exceeds a chi-square (3 degrees of freedom).
+        """Check whether a new edge to the node is inconsistent with the graph.
 
-        Both the edge's covariance and that of the graph count.
+        The squared error is weighted by the sum of the edge's covariance and that of the graph.
+
+        Args:
+            edge: Edge whose ``second`` is the node; not part of the graph.
+            max_chi_square: Largest chi-square of a consistent edge, with 3 degrees of freedom.
+
+        Returns:
+            Whether the edge exceeds ``max_chi_square``.
         """
         estimated = relative_pose(self._poses, edge.first, self._node)
         error = edge.second_in_first.as_array() - estimated.as_array()

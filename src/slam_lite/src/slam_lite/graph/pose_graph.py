@@ -28,13 +28,13 @@ COARSE, FINE = 5e-3, 1e-5
 
 @dataclass(frozen=True, eq=False)
 class Edge:
-    """A measurement of one node's pose in another's frame.
+    """Measurement of one node's pose in the frame of another.
 
     Attributes:
-        first: Index of the node in whose frame it is.
+        first: Index of the node in whose frame the measurement is given.
         second: Index of the measured node.
-        second_in_first: The measured pose.
-        information: (3, 3), of x, y, yaw along first's axes, 1 / (m, m, rad)^2.
+        second_in_first: Measured pose.
+        information: (3, 3), of x, y, yaw along the axes of ``first``, 1 / (m, m, rad)^2.
         is_loop: Whether it is a loop closure, which may be wrong and is weighted robustly.
     """
 
@@ -51,9 +51,9 @@ class Edges:
 
     Attributes:
         nodes: (E, 2), indices of first and second node.
-        measured: (E, 3), pose of second in first.
-        information: (E, 3, 3), of ``measured``.
-        is_loop: (E,), whether each is a loop closure.
+        measured: (E, 3), pose of second in first, rows ``[x, y, yaw]``.
+        information: (E, 3, 3), of ``measured``, 1 / (m, m, rad)^2.
+        is_loop: (E,), whether each edge is a loop closure.
     """
 
     nodes: np.ndarray
@@ -71,9 +71,14 @@ class Edges:
 
 
 class EdgeList:
-    """An append-only list of edges, stored as arrays; earlier views stay valid."""
+    """Append-only list of edges, stored as arrays; earlier views stay valid."""
 
     def __init__(self, edges: Optional[Edges] = None) -> None:
+        """Create a list.
+
+        Args:
+            edges: Initial edges; by default none.
+        """
         self._arrays = edges or Edges(
             np.empty((0, 2), dtype=np.int64),
             np.empty((0, 3)),
@@ -102,12 +107,18 @@ class EdgeList:
 
 
 def relative_pose(poses: np.ndarray, first: int, second: int) -> Pose2:
-    """Pose of node ``second`` in the frame of node ``first``; ``poses`` (N, 3)."""
+    """Compute the pose of one node in the frame of another.
+
+    Args:
+        poses: (N, 3), poses of all nodes in a common frame.
+        first: Index of the node whose frame is used.
+        second: Index of the other node.
+    """
     return Pose2.from_array(poses[first]).inverse() @ Pose2.from_array(poses[second])
 
 
 def edges_of(*edges: Edge) -> Edges:
-    """Return edges as arrays."""
+    """Convert edges to arrays."""
     table = EdgeList()
     for edge in edges:
         table.append(edge)
@@ -115,13 +126,27 @@ def edges_of(*edges: Edge) -> Edges:
 
 
 def concatenate(edges: Edges, more: Sequence[Edge]) -> Edges:
-    """Return edges followed by some more."""
+    """Append edges to arrays of edges; returns new arrays.
+
+    Args:
+        edges: Edges as arrays.
+        more: Edges to append.
+    """
     pairs = zip(vars(edges).values(), vars(edges_of(*more)).values())
     return Edges(*(np.concatenate(pair) for pair in pairs))
 
 
 def inflate(edge: Edge, sigma_xy: float, sigma_yaw: float) -> Edge:
-    """Return an edge with an independent error added, of these standard deviations in metres and radians."""
+    """Add an independent error to an edge.
+
+    Args:
+        edge: Edge, possibly without information in some direction.
+        sigma_xy: Standard deviation of the error in x and in y [m].
+        sigma_yaw: Standard deviation of the error in heading [rad].
+
+    Returns:
+        The same edge with less information.
+    """
     added = np.diag([sigma_xy**-2, sigma_xy**-2, sigma_yaw**-2])
     # Woodbury's identity, as a degenerate match has no covariance to add to.
     information = edge.information
@@ -130,17 +155,17 @@ def inflate(edge: Edge, sigma_xy: float, sigma_yaw: float) -> Edge:
 
 
 def optimize(poses: np.ndarray, edges: Edges, tolerance: float, new_count: int = 0) -> np.ndarray:
-    """Find the poses that agree best with the edges; node 0 stays fixed.
+    """Find the poses that fit the edges best; node 0 stays fixed.
 
-    The poses do not fit new edges yet, so these get full weight at first, whatever their error, and less and
-    less of it (graduated non-convexity, H. Yang et al., RA-L 2020). If some of them are outliers at the end,
-    they may have pulled others apart: the optimization starts again without full weight for them.
+    New edges do not fit the poses yet, so they start with full weight whatever their error, which then
+    decreases (graduated non-convexity, H. Yang et al., RA-L 2020). New edges that are outliers at the end may
+    have pulled others apart: the optimization then starts again without full weight for them.
 
     Args:
-        poses: (N, 3), initial poses.
-        edges: Of the graph.
+        poses: (N, 3), initial poses in the map frame.
+        edges: Edges of the graph; new ones last.
         tolerance: Largest change of a pose in the last step, metres and radians.
-        new_count: Number of new edges, which are the last ones.
+        new_count: Number of new edges.
 
     Returns:
         (N, 3), the optimized poses.
@@ -185,7 +210,15 @@ def _descend(poses: np.ndarray, edges: Edges, phi: np.ndarray, tolerance: float)
 
 
 def chi_squares(poses: np.ndarray, edges: Edges) -> np.ndarray:
-    """Squared error (E,) of each edge, weighted by its information; ``poses`` (N, 3)."""
+    """Compute the squared error of each edge, weighted by its information.
+
+    Args:
+        poses: (N, 3), poses of the nodes in the map frame.
+        edges: Edges of the graph, E.
+
+    Returns:
+        (E,).
+    """
     return _chi_squares(poses, edges.nodes, edges.measured, edges.information)
 
 
@@ -212,15 +245,16 @@ def _step(poses: np.ndarray, edges: Edges, phi: np.ndarray, damping: float) -> n
 def normal_equations(
     poses: np.ndarray, edges: Edges, phi: Optional[np.ndarray] = None
 ) -> Tuple[csc_matrix, np.ndarray]:
-    """Build the normal equations.
+    """Build the normal equations of a Gauss-Newton step.
 
     Args:
-        poses: (N, 3).
-        edges: Of the graph.
-        phi: (E,), of each loop edge; default: its final value.
+        poses: (N, 3), poses of the nodes in the map frame.
+        edges: Edges of the graph, E.
+        phi: (E,), chi-square above which each loop edge is down-weighted; by default the value at the end of
+            an optimization.
 
     Returns:
-        The information matrix (3 N, 3 N) of all poses, and the gradient (3 N,).
+        Information matrix (3 N, 3 N) of all poses, and gradient (3 N,).
     """
     phi = np.full(len(edges), _PHI) if phi is None else phi
     rows, cols, values, gradient = _linearize(
@@ -230,7 +264,12 @@ def normal_equations(
 
 
 def factorize(matrix: csc_matrix, damping: float = 0.0) -> SuperLU:
-    """Factorize an information matrix without the fixed node's rows and columns; ``matrix`` is changed."""
+    """Factorize an information matrix.
+
+    Args:
+        matrix: Information matrix without the rows and columns of the fixed node; its diagonal is modified.
+        damping: Share by which the diagonal is increased (Levenberg-Marquardt).
+    """
     matrix.setdiag(matrix.diagonal() * (1.0 + damping) + 1e-9)
     return splu(
         matrix,

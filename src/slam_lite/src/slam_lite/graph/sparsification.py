@@ -1,4 +1,4 @@
-"""Sparsification of a pose graph: nodes are removed, the information between the others is kept."""
+"""Sparsification of a pose graph: remove nodes and keep the information between the others."""
 
 from typing import Dict, Tuple
 
@@ -14,14 +14,15 @@ _LEAST_XY, _LEAST_YAW = 0.01, 0.003
 
 
 def sparsify(poses: np.ndarray, edges: Edges, kept: np.ndarray) -> Edges:
-    """Remove nodes from a settled graph.
+    """Remove nodes from an optimized graph.
 
     Remaining nodes that become neighbours are connected by edges with their present relative pose and its
-    covariance in the graph. Loop edges move to the nearest remaining nodes, and are dropped if those are far.
+    covariance in the graph. Loop edges move to the nearest remaining nodes; they are removed if those are
+    far.
 
     Args:
-        poses: (N, 3).
-        edges: Of the graph.
+        poses: (N, 3), poses of the nodes in the map frame.
+        edges: Edges of the graph.
         kept: Indices of the remaining nodes, ascending.
 
     Returns:

@@ -17,19 +17,19 @@ def cycle_error(
     degenerate: np.ndarray,
     other_degenerate: np.ndarray,
 ) -> Tuple[float, float]:
-    """Error around the cycle place - recent - other recent - other place - place.
+    """Compute the error around the cycle place - recent - other recent - other place - place.
 
     Args:
-        one: From place to recent keyframe.
-        other: From other place to other recent keyframe.
+        one: Edge from a place to a recent keyframe.
+        other: Edge from another place to another recent keyframe.
         recent_step: Pose of the other recent keyframe in the recent one.
         place_step: Pose of the other place in the place.
-        degenerate: Unit vector (2,), along the place's axes, in which ``one`` has no information, or zeros;
-            errors along it do not count.
-        other_degenerate: The same of ``other``, along the other place's axes.
+        degenerate: Unit vector (2,), along the axes of the place, in which ``one`` has no information, or
+            zeros; errors along it do not count.
+        other_degenerate: The same for ``other``, along the axes of the other place.
 
     Returns:
-        Metres and radians.
+        Error of position [m] and of heading [rad].
     """
     via_recent, via_place = one.second_in_first @ recent_step, place_step @ other.second_in_first
     error = np.array([via_place.x - via_recent.x, via_place.y - via_recent.y])
@@ -39,5 +39,5 @@ def cycle_error(
 
 
 def rotated(vector: np.ndarray, yaw: float) -> np.ndarray:
-    """A vector (2,) rotated by ``yaw``."""
+    """Rotate a vector (2,) by ``yaw`` [rad]."""
     return Pose2(0.0, 0.0, yaw).transform_points(vector[None])[0]

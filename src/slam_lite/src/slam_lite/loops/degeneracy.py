@@ -34,12 +34,12 @@ _MAX_MOVED, _MAX_TURNED = 0.3, 0.1
 
 @dataclass(frozen=True, eq=False)
 class PoseConstraint:
-    """What a match measures.
+    """Relative pose that a match measures.
 
     Attributes:
-        base_in_place: Pose of the base in the place's frame.
-        information: (3, 3), of that pose.
-        degenerate_direction: Unit vector (2,) along which there is no information, or zeros.
+        base_in_place: Pose of the base in the frame of the place.
+        information: (3, 3), of that pose, 1 / (m, m, rad)^2.
+        degenerate_direction: Unit vector (2,) along which there is no information; zeros if there is none.
     """
 
     base_in_place: Pose2
@@ -48,7 +48,17 @@ class PoseConstraint:
 
 
 def refine_at(start: Pose2, cloud: PointCloud, local_map: LocalMap, min_response: float) -> Optional[Match]:
-    """Refine a match; None if it moves too far from ``start`` or its response is too low."""
+    """Refine a match without prior.
+
+    Args:
+        start: Initial pose of the base in the frame of the local map.
+        cloud: Points to match, in the base frame.
+        local_map: Map to match to.
+        min_response: Least fraction of matching points, 0 to 1.
+
+    Returns:
+        The match; None if it is more than 0.3 m or 0.1 rad from ``start`` or its response is too low.
+    """
     match = refine(cloud, local_map, start, start, np.zeros((3, 3)))
     moved = start.inverse() @ match.base_pose
     is_near = math.hypot(moved.x, moved.y) <= _MAX_MOVED and abs(moved.yaw) <= _MAX_TURNED
@@ -65,14 +75,15 @@ def constraint_at_peak(
     """Measure the pose of the base at a peak of the search.
 
     Args:
-        peak: Of the search.
-        guess: Estimated pose of the base in the local map.
-        cloud: The points that were searched.
-        local_map: In which they were searched.
-        match_at: Refines a match at a pose; None if it is not good enough.
+        peak: Best pose of the search.
+        guess: Estimated pose of the base in the frame of the local map; along a degenerate direction the
+            match nearest to it is used.
+        cloud: Points that were searched, in the base frame.
+        local_map: Map in which they were searched.
+        match_at: Refines a match at a pose; returns None if it is not good enough.
 
     Returns:
-        The constraint, None if there is no good match or an equally good one elsewhere.
+        The constraint; None if there is no good match or an equally good one elsewhere.
     """
     match = match_at(peak.base_pose)
     if match is None:

@@ -1,8 +1,8 @@
-"""Loop candidates: pairs of keyframes that may see the same place, to be searched for a loop closure.
+"""Loop candidates: pairs of keyframes that may see the same place, where loop closures are searched.
 
 A place is a candidate if the path to it along the pose graph, on which errors accumulate, is much longer than
-the straight line (E. Olson, "Recognizing places using spectrally clustered local matches", RAS 2009). Beyond
-the search windows of these, candidates come from place recognition.
+the straight line (E. Olson, "Recognizing places using spectrally clustered local matches", RAS 2009). Outside
+of the search windows of these, candidates come from place recognition.
 """
 
 from dataclasses import dataclass
@@ -45,9 +45,9 @@ class LoopCandidate:
         place: Index of the older keyframe.
         recent: Index of the recent keyframe.
         recent_keyframes: Number of keyframes up to the recent one that are merged for the match.
-        window: Window to search, around ``guess``.
-        scale: How many times more keyframes than in a small window are needed.
-        guess: Pose of the recent keyframe in the older one.
+        window: Search window around ``guess``.
+        scale: Factor by which more keyframes are merged than for a small window.
+        guess: Estimated pose of the recent keyframe in the older one.
         is_recognized: Whether the guess comes from place recognition instead of the graph.
     """
 
@@ -61,7 +61,7 @@ class LoopCandidate:
 
     @property
     def is_ambiguous(self) -> bool:
-        """Whether the robot may be somewhere else that looks much the same."""
+        """Whether the robot may be at another place that looks similar."""
         return self.is_recognized or self.scale >= _MAX_SCALE
 
 
@@ -72,9 +72,9 @@ def loop_candidates(
 
     Args:
         recent: Index of the keyframe.
-        poses: (N, 3), of all keyframes in the map frame.
-        edges: Of the pose graph.
-        settings: ``closure_min_detour`` and ``closure_interval``.
+        poses: (N, 3), poses of all keyframes in the map frame.
+        edges: Edges of the pose graph.
+        settings: ``closure_min_detour`` [m] and ``closure_interval`` [keyframes].
 
     Returns:
         At most three candidates, nearest first.
@@ -103,7 +103,14 @@ def loop_candidates(
 def candidate_at_recognized_place(
     place: int, recent: int, recent_keyframes: int, recent_in_place: Pose2
 ) -> LoopCandidate:
-    """Make the candidate at a place that looks like where ``recent`` is, wherever the graph has it."""
+    """Create the candidate of a recognized place, independent of the graph.
+
+    Args:
+        place: Index of the older keyframe.
+        recent: Index of the recent keyframe.
+        recent_keyframes: Number of keyframes up to the recent one that are merged for the match.
+        recent_in_place: Pose of the recent keyframe in the older one, from place recognition.
+    """
     return LoopCandidate(
         place, recent, recent_keyframes, _RECOGNITION_WINDOW, _MAX_SCALE, recent_in_place, True
     )
@@ -118,7 +125,7 @@ def _candidate(place: int, recent: int, paths: np.ndarray, distance: float, gues
 
 
 def are_outside_search_windows(paths: np.ndarray, drift: np.ndarray) -> np.ndarray:
-    """Which places may lie farther off than ``loop_candidates`` searches.
+    """Find the places that may lie outside of the windows that ``loop_candidates`` searches.
 
     Args:
         paths: (N,), length of the path along the graph to each place [m].
@@ -132,7 +139,13 @@ def are_outside_search_windows(paths: np.ndarray, drift: np.ndarray) -> np.ndarr
 
 
 def is_within_drift(hypothesis: PlaceHypothesis, poses: np.ndarray, drift: np.ndarray) -> bool:
-    """Whether the graph may be off by as much as a hypothesis implies; ``drift`` (2,) as above."""
+    """Check whether the drift of the graph can explain a place hypothesis.
+
+    Args:
+        hypothesis: Recognized place.
+        poses: (N, 3), poses of all keyframes in the map frame.
+        drift: (2,), standard deviations of position [m] and heading [rad] between the two keyframes.
+    """
     measured = hypothesis.recent_in_place.inverse()
     estimated = relative_pose(poses, hypothesis.recent, hypothesis.place)
     is_near = measured.distance_to(estimated) < _MAX_SIGMAS * drift[0] + _RECOGNITION_WINDOW.distance
@@ -141,10 +154,16 @@ def is_within_drift(hypothesis: PlaceHypothesis, poses: np.ndarray, drift: np.nd
 
 
 def edge_lengths(edges: Edges) -> np.ndarray:
-    """Length (E,) of each edge: metres, with a radian counted as one.
+    """Compute the length of each edge as a path on which errors accumulate.
 
-    A loop closure, and a step that is only a guess, is as long as the path on which the front end drifts by
-    its standard deviation.
+    A step counts with its distance plus its rotation, one radian as one metre. A loop closure, or a step that
+    is only a guess, counts as the path on which the front end drifts by its standard deviation.
+
+    Args:
+        edges: Edges of the graph, E.
+
+    Returns:
+        (E,) [m].
     """
     steps = edges.measured
     lengths = np.hypot(steps[:, 0], steps[:, 1]) + np.abs(steps[:, 2])

@@ -1,8 +1,8 @@
 """Loop closures and their verification.
 
-A loop closure counts at once only if the graph already knew the place to within a small window. Otherwise it
-has to be confirmed by a second one nearby that is consistent with it, and by two more if the place was found
-by place recognition alone.
+A loop closure is accepted at once only if the graph already knew the place to within a small window.
+Otherwise a second consistent one nearby has to confirm it, and two more if the place was found by place
+recognition alone.
 """
 
 import math
@@ -35,14 +35,14 @@ _MAX_CHI_SQUARE = 6.0
 
 @dataclass(frozen=True, eq=False)
 class LoopClosure:
-    """A measurement of a recent keyframe's pose in an older keyframe.
+    """Measurement of a recent keyframe's pose in an older keyframe.
 
     Attributes:
-        edge: From the older keyframe to the recent one.
-        candidate: Where it was searched.
+        edge: Edge from the older keyframe to the recent one.
+        candidate: Candidate at which it was found.
         degenerate_direction: Unit vector (2,), along the axes of ``edge.first``, in which the edge has no
             information, as along a smooth corridor; zeros if there is none.
-        contradicts_graph: Whether it is an outlier by the graph's covariance.
+        contradicts_graph: Whether it is an outlier given the covariance of the graph.
     """
 
     edge: Edge
@@ -52,40 +52,49 @@ class LoopClosure:
 
     @property
     def graph_edge(self) -> Edge:
-        """The edge to add to the graph, with errors that the match does not include."""
+        """Edge to add to the graph, with the errors that the match does not include."""
         return inflate(self.edge, _SIGMA_XY, _SIGMA_YAW)
 
     @property
     def witnesses_needed(self) -> int:
-        """Number of consistent loop closures that it takes for confirmation."""
+        """Number of further consistent loop closures that are needed to confirm it."""
         if self.candidate.is_recognized:
             return 2
         return 0 if self.candidate.window.distance <= _FAMILIAR_DISTANCE and not self.contradicts_graph else 1
 
 
 class LoopClosureVerifier:
-    """Decides which loop closures to the newest keyframe are added to the graph."""
+    """Decides which loop closures of the newest keyframe are added to the graph."""
 
     def __init__(self, poses: np.ndarray, edges: Edges):
-        """``poses``: (N, 3), of all keyframes in the map frame."""
+        """Set the graph.
+
+        Args:
+            poses: (N, 3), poses of all keyframes in the map frame.
+            edges: Edges of the graph.
+        """
         self._poses, self._edges = poses, edges
 
     def check_against_graph(self, closure: LoopClosure) -> LoopClosure:
-        """Return the loop closure with ``contradicts_graph`` set, unless it needs confirmation anyway."""
+        """Return the loop closure with ``contradicts_graph`` set, unless it needs confirmation anyway.
+
+        Args:
+            closure: Loop closure of the newest keyframe.
+        """
         if closure.witnesses_needed:
             return closure
         is_outlier = self._covariance.is_outlier(closure.graph_edge, _MAX_CHI_SQUARE)
         return replace(closure, contradicts_graph=is_outlier)
 
     def verify(self, closure: LoopClosure, pending: Sequence[LoopClosure]) -> Sequence[LoopClosure]:
-        """Verify a loop closure by earlier ones.
+        """Verify a loop closure with earlier ones.
 
         Args:
-            closure: The new one.
+            closure: The new loop closure.
             pending: Earlier ones that are not verified yet.
 
         Returns:
-            The loop closures to accept: the new one with those that confirm it, or none.
+            The loop closures to accept: the new one and those that confirm it, or none.
         """
         witnesses = [other for other in pending if agree(closure, other, self._poses)]
         if not _is_confirmed(closure, witnesses, self._poses):
@@ -122,11 +131,16 @@ class LoopClosureVerifier:
 
 
 def agree(one: LoopClosure, other: LoopClosure, poses: np.ndarray) -> bool:
-    """Whether two loop closures between the same two segments are consistent.
+    """Check whether two loop closures between the same two segments are consistent.
 
     Around the cycle place - recent - other recent - other place - place the errors must cancel, up to the
-    drift of the front end between them, and up to the direction in which both may be degenerate. A degenerate
-    one cannot confirm one that is not: it does not measure how far along the corridor the robot is.
+    drift of the front end between them and up to the direction in which both may be degenerate. A degenerate
+    loop closure cannot confirm one that is not: it does not measure the position along the corridor.
+
+    Args:
+        one: Loop closure to confirm.
+        other: Loop closure that may confirm it.
+        poses: (N, 3), poses of all keyframes in the map frame.
     """
     recent_distance, place_distance, error, turn = _disagreement(one, other, poses)
     if not RECENT_PATH <= recent_distance <= _MAX_WITNESS_DISTANCE:
@@ -141,7 +155,13 @@ def agree(one: LoopClosure, other: LoopClosure, poses: np.ndarray) -> bool:
 
 
 def contradict(one: LoopClosure, other: LoopClosure, poses: np.ndarray) -> bool:
-    """Whether two loop closures of the same segment put it to different places."""
+    """Check whether two loop closures of the same segment place it differently.
+
+    Args:
+        one: A loop closure.
+        other: Another loop closure.
+        poses: (N, 3), poses of all keyframes in the map frame.
+    """
     recent_distance, place_distance, error, turn = _disagreement(one, other, poses)
     if recent_distance > _MAX_WITNESS_DISTANCE:
         return False

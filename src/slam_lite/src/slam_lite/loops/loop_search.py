@@ -35,14 +35,14 @@ def find_loop_closure(
     """Match the recent keyframes of a candidate to those around its place.
 
     Args:
-        candidate: Where to search.
-        poses: (N, 3), of all keyframes in the map frame.
-        clouds: Of all keyframes.
-        local_map: Is overwritten.
+        candidate: Candidate to search.
+        poses: (N, 3), poses of all keyframes in the map frame.
+        clouds: Points of all keyframes, each in its base frame.
+        local_map: Working memory; overwritten.
         settings: ``closure_min_response``.
 
     Returns:
-        The loop closure, None if there is no good and unambiguous match. It still has to be verified.
+        The loop closure, which still has to be verified; None if there is no good and unambiguous match.
     """
     place, recent = candidate.place, candidate.recent
     first_recent = recent - candidate.recent_keyframes + 1

@@ -1,11 +1,11 @@
-"""Place recognition: places that look alike, wherever the graph has them.
+"""Place recognition: similar places, independent of where the graph puts them.
 
 A place descriptor holds profiles of the walls along the place's two main directions: how much wall faces each
 of the four directions at each distance. Two places are compared by shifting their profiles along each other,
 for each quarter turn, which gives their similarity and their relative pose (A. Censi et al., "Scan matching
 in the Hough domain", ICRA 2005; T. Roefer, "Using histogram correlation to create consistent laser scan
-maps", IROS 2002). Profiles need no guess, and as Fourier transforms they are compared so fast that a place is
-compared with all others. Places that look alike are hypotheses only, at which a loop closure is searched.
+maps", IROS 2002). Profiles need no initial guess. They are compared as Fourier transforms, which is fast
+enough to compare a place with all others. The results are hypotheses, at which a loop closure is searched.
 """
 
 import math
@@ -49,8 +49,8 @@ class PlaceDescriptor:
     Attributes:
         keyframe: Index of the keyframe.
         axis: Direction of the place's x axis in the keyframe [rad].
-        spectra: (4, F) complex, Fourier transforms of the profiles of walls that face +x, -x, +y and -y.
-            Those of both directions have length 1.
+        spectra: (4, F) complex, Fourier transforms of the profiles of walls that face +x, -x, +y and -y. The
+            two of an axis together are normalized to length 1.
     """
 
     keyframe: int
@@ -65,8 +65,8 @@ class PlaceHypothesis:
     Attributes:
         place: Index of the older keyframe.
         recent: Index of the recent keyframe.
-        recent_in_place: Pose of the recent one in the older one.
-        similarity: Of the two places, 0 to 1.
+        recent_in_place: Pose of the recent keyframe in the older one.
+        similarity: Similarity of the two places, 0 to 1.
     """
 
     place: int
@@ -81,8 +81,8 @@ class TrajectorySegment:
 
     Attributes:
         first: Index of the first keyframe.
-        middle: Index of the one in the middle, whose frame is that of the place.
-        last: Index of the last one.
+        middle: Index of the keyframe in the middle, whose frame is the frame of the place.
+        last: Index of the last keyframe.
     """
 
     first: int
@@ -90,7 +90,15 @@ class TrajectorySegment:
     last: int
 
     def descriptor(self, clouds: Sequence[PointCloud], poses: np.ndarray) -> Optional[PlaceDescriptor]:
-        """Describe the place; None if it has no main directions. ``poses`` (N, 3)."""
+        """Compute the descriptor of the place.
+
+        Args:
+            clouds: Points of all keyframes, each in its base frame.
+            poses: (N, 3), poses of all keyframes in the map frame.
+
+        Returns:
+            The descriptor, None if the place has no main directions.
+        """
         keyframes = range(self.first, self.last + 1)
         merged = merge_clouds([(clouds[i], relative_pose(poses, self.middle, i)) for i in keyframes])
         return place_descriptor(self.middle, merged)
@@ -98,10 +106,10 @@ class TrajectorySegment:
 
 @dataclass(frozen=True, eq=False)
 class PlaceDatabase:
-    """The place descriptors of a map, and the state of the queries along the present trajectory.
+    """Place descriptors of a map, and the state of the queries along the present trajectory.
 
     Attributes:
-        descriptors: Of all places so far.
+        descriptors: Descriptors of all places so far.
         queries: Hypotheses of each of the last queries.
         last: Last keyframe of the last query's segment.
         start: First keyframe of the present trajectory.
@@ -113,10 +121,13 @@ class PlaceDatabase:
     start: int = 0
 
     def next_segment(self, travelled: np.ndarray) -> Optional[TrajectorySegment]:
-        """The segment to query next, None if the robot has not driven far enough.
+        """Return the segment to query next.
 
         Args:
             travelled: (N,), path length from the first keyframe to each [m].
+
+        Returns:
+            The segment, None if the robot has not driven far enough.
         """
         if self.start >= len(travelled):
             return None
@@ -135,17 +146,32 @@ class PlaceDatabase:
         descriptor: Optional[PlaceDescriptor],
         hypotheses: Sequence[PlaceHypothesis],
     ) -> "PlaceDatabase":
-        """Return the database with one more place and the hypotheses of its query."""
+        """Return the database with one more place.
+
+        Args:
+            segment: Keyframes that see the place.
+            descriptor: Descriptor of the place, None if it has none.
+            hypotheses: Results of the query with this descriptor.
+        """
         descriptors = self.descriptors if descriptor is None else (*self.descriptors, descriptor)
         queries = (*self.queries, tuple(hypotheses))[-_QUERIES:]
         return PlaceDatabase(descriptors, queries, segment.last, self.start)
 
     def with_new_trajectory(self, start: int) -> "PlaceDatabase":
-        """Return the database for a trajectory that starts at keyframe ``start``."""
+        """Return the database for a new trajectory.
+
+        Args:
+            start: Index of the first keyframe of the trajectory.
+        """
         return PlaceDatabase(self.descriptors, (), start, start)
 
     def confirmed(self, hypotheses: Sequence[PlaceHypothesis], poses: np.ndarray) -> List[PlaceHypothesis]:
-        """Those of a query's hypotheses that are consistent with one of the last queries."""
+        """Select the hypotheses of a query that are consistent with one of the last queries.
+
+        Args:
+            hypotheses: Hypotheses of the query.
+            poses: (N, 3), poses of all keyframes in the map frame.
+        """
         is_confirmed = np.zeros(len(hypotheses), dtype=bool)
         for earlier in self.queries:
             is_confirmed |= are_consistent(hypotheses, earlier, poses).any(axis=1)
@@ -153,7 +179,12 @@ class PlaceDatabase:
 
 
 def database_of_map(clouds: Sequence[PointCloud], poses: np.ndarray) -> PlaceDatabase:
-    """Describe all places of a finished map, before a new trajectory starts in it."""
+    """Compute the descriptors of all places of a finished map, for a new trajectory in it.
+
+    Args:
+        clouds: Points of all keyframes, each in its base frame.
+        poses: (N, 3), poses of all keyframes in the map frame.
+    """
     descriptors = descriptors_along(clouds, poses, travelled_distances(poses))
     return PlaceDatabase(descriptors, (), len(poses), len(poses))
 
@@ -161,7 +192,13 @@ def database_of_map(clouds: Sequence[PointCloud], poses: np.ndarray) -> PlaceDat
 def descriptors_along(
     clouds: Sequence[PointCloud], poses: np.ndarray, travelled: np.ndarray
 ) -> Tuple[PlaceDescriptor, ...]:
-    """Describe all places along a trajectory, in order; ``poses`` (N, 3), ``travelled`` (N,) as above."""
+    """Compute the descriptors of all places along a trajectory, in order.
+
+    Args:
+        clouds: Points of all keyframes, each in its base frame.
+        poses: (N, 3), poses of the keyframes in a common frame.
+        travelled: (N,), path length from the first keyframe to each [m].
+    """
     database = PlaceDatabase()
     segment = database.next_segment(travelled)
     while segment is not None:
@@ -171,14 +208,29 @@ def descriptors_along(
 
 
 def travelled_distances(poses: np.ndarray) -> np.ndarray:
-    """Path length (N,) from the first of some poses (N, 3) to each [m]."""
+    """Compute the path length from the first pose to each.
+
+    Args:
+        poses: (N, 3), rows ``[x, y, yaw]``.
+
+    Returns:
+        (N,) [m].
+    """
     if len(poses) == 0:
         return np.empty(0)
     return np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(poses[:, :2], axis=0).T))))
 
 
 def place_descriptor(keyframe: int, cloud: PointCloud) -> Optional[PlaceDescriptor]:
-    """Describe the points around a keyframe, in its frame; None if they have no main directions."""
+    """Compute the descriptor of the surroundings of a keyframe.
+
+    Args:
+        keyframe: Index of the keyframe.
+        cloud: Points around the keyframe, in its frame.
+
+    Returns:
+        The descriptor, None if the points have no main directions.
+    """
     pieces = np.floor(cloud.points_xy / _PIECE).astype(np.int64)
     _, kept = np.unique(pieces[:, 0] * 2**20 + pieces[:, 1], return_index=True)
     points, normals = cloud.points_xy[kept], cloud.normals_xy[kept]
@@ -199,7 +251,15 @@ def place_descriptor(keyframe: int, cloud: PointCloud) -> Optional[PlaceDescript
 
 
 def match_places(recent: PlaceDescriptor, places: Sequence[PlaceDescriptor]) -> List[PlaceHypothesis]:
-    """Find the places that look like ``recent``, most similar first."""
+    """Find the places that are similar to another one.
+
+    Args:
+        recent: Descriptor of the place to find.
+        places: Descriptors to compare it with.
+
+    Returns:
+        Hypotheses, most similar first.
+    """
     rotated = [recent.spectra]
     for _ in range(3):
         rotated.append(_quarter_turned(rotated[-1]))
@@ -236,12 +296,12 @@ _SHIFTS = np.arange(-round(_MAX_SHIFT / _BIN), round(_MAX_SHIFT / _BIN) + 1)
 def are_consistent(
     hypotheses: Sequence[PlaceHypothesis], others: Sequence[PlaceHypothesis], poses: np.ndarray
 ) -> np.ndarray:
-    """Which hypotheses of two queries put the trajectory to the same place.
+    """Find the pairs of hypotheses of two queries that place the trajectory consistently.
 
     Args:
-        hypotheses: Of one query, N.
-        others: Of the other query, M.
-        poses: (K, 3), of all keyframes in the map frame.
+        hypotheses: Hypotheses of one query, N.
+        others: Hypotheses of the other query, M.
+        poses: (K, 3), poses of all keyframes in the map frame.
 
     Returns:
         (N, M) booleans.
@@ -263,7 +323,15 @@ def _recent_in_map(hypotheses: Sequence[PlaceHypothesis], poses: np.ndarray) -> 
 
 
 def compose_poses(first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """Compose poses ``first`` (N, 3) with relative poses ``second`` (N, 3) or (1, 3), to (N, 3)."""
+    """Compose poses with relative poses, row by row.
+
+    Args:
+        first: (N, 3), poses in a common frame.
+        second: (N, 3) or (1, 3), poses relative to ``first``.
+
+    Returns:
+        (N, 3), poses in the common frame.
+    """
     c, s = np.cos(first[:, 2]), np.sin(first[:, 2])
     x = first[:, 0] + c * second[:, 0] - s * second[:, 1]
     y = first[:, 1] + s * second[:, 0] + c * second[:, 1]

@@ -1,8 +1,8 @@
-"""Relocalization: finding the robot in a map without a guess, where its scans match and nowhere else.
+"""Relocalization: finding the robot in a map without an initial pose.
 
-The map is searched around places all over it, in every direction, by branch and bound (W. Hess et al.,
-"Real-time loop closure in 2D LIDAR SLAM", ICRA 2016). In maps of too many places for that, place recognition
-has to find the robot as it drives.
+A pose is accepted if the scans match there and nowhere else. The map is searched around places all over it,
+in every direction, by branch and bound (W. Hess et al., "Real-time loop closure in 2D LIDAR SLAM", ICRA
+2016). Maps with too many places for that rely on place recognition while the robot drives.
 """
 
 import math
@@ -36,15 +36,15 @@ _PRIOR_WINDOW = SearchWindow(1.0, 0.4)
 
 
 class Relocalizer:
-    """Searches the robot among the keyframes of a map."""
+    """Global search for the robot among the keyframes of a map."""
 
     def __init__(self, clouds: Sequence[PointCloud], poses: np.ndarray, local_map: LocalMap):
         """Set the map.
 
         Args:
-            clouds: Of the keyframes.
-            poses: (N, 3), of the keyframes in the map frame.
-            local_map: Is overwritten.
+            clouds: Points of the keyframes, each in its base frame.
+            poses: (N, 3), poses of the keyframes in the map frame.
+            local_map: Working memory; overwritten.
         """
         self._clouds, self._poses, self._local_map = clouds, poses, local_map
 
@@ -52,11 +52,11 @@ class Relocalizer:
         """Search the whole map.
 
         Args:
-            recent: The robot's last scans, each with its pose in the robot's frame.
-            prior: Where to search first.
+            recent: Last scans of the robot, each with its pose in the robot's present frame.
+            prior: Pose in the map frame around which to search first.
 
         Returns:
-            The robot's pose in the map, None if there is no unique match.
+            Robot pose in the map frame, None if there is no unique match.
         """
         cloud = downsampled(merge_clouds(recent), _MAX_POINTS)
         if len(cloud) < _MIN_POINTS or len(self._poses) == 0:
@@ -71,7 +71,15 @@ class Relocalizer:
         return self._verify(_unique_peak(peaks), cloud, recent)
 
     def find_pose_near(self, recent: Sequence[PosedCloud], prior: Pose2) -> Optional[Pose2]:
-        """Search around ``prior`` only; else as ``find_pose``."""
+        """Search around a pose only.
+
+        Args:
+            recent: Last scans of the robot, each with its pose in the robot's present frame.
+            prior: Pose in the map frame around which to search.
+
+        Returns:
+            Robot pose in the map frame, None if there is no unique match.
+        """
         cloud = downsampled(merge_clouds(recent), _MAX_POINTS)
         if len(cloud) < _MIN_POINTS:
             return None
@@ -83,9 +91,12 @@ class Relocalizer:
         """Find the loop closure that joins a separate trajectory with the map.
 
         Args:
-            clouds: Of the map's keyframes and those of the trajectory.
-            poses: (M, 3), of the same.
+            clouds: Points of the map's keyframes and those of the trajectory, each in its base frame.
+            poses: (M, 3), poses of all of them in the map frame.
             recent_keyframes: Number of last keyframes that are merged for the search.
+
+        Returns:
+            The loop closure, None if there is no unique match.
         """
         last = len(poses) - 1
         map_in_last = Pose2.from_array(poses[last]).inverse()
@@ -129,7 +140,16 @@ class Relocalizer:
 
 
 def spread_places(poses: np.ndarray, apart: float) -> List[int]:
-    """Choose keyframes at poses (N, 3) that are ``apart`` metres from each other and cover all others."""
+    """Choose keyframes that are apart from each other and cover all others.
+
+    Args:
+        poses: (N, 3), poses of the keyframes in the map frame.
+        apart: Least distance between chosen keyframes, and largest from any other keyframe to one of them
+            [m].
+
+    Returns:
+        Indices of the chosen keyframes.
+    """
     chosen: List[int] = []
     distances = np.full(len(poses), np.inf)
     while len(distances) and distances.max() > apart:

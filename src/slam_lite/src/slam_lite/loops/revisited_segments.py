@@ -1,9 +1,9 @@
 """Loop closures along revisited segments: long segments are matched to each other, after the last scan.
 
 Where little is seen, and from the opposite side, as on the return through a yard of trees, the few scans of a
-usual loop closure do not match. Scans of some thirty metres do, merged in a coarse grid that ignores the side
-of a wall. They are merged as the front end tracked them: loop closures elsewhere bend the graph evenly over
-many steps, whereas wheels slip on one.
+usual loop closure do not match. Scans of about thirty metres do match, merged in a coarse grid that ignores
+the side of a wall. They are merged along the trajectory of the front end, because the optimized graph spreads
+the error of a single wheel slip evenly over many steps.
 """
 
 from typing import List, NamedTuple, Optional, Sequence, Set, Tuple
@@ -51,13 +51,13 @@ _ERROR, _TURN, _ERROR_RATE, _TURN_RATE = 0.35, 0.05, 0.015, 0.001
 def match_revisited_segments(
     poses: np.ndarray, edges: Edges, clouds: Sequence[PointCloud], local_map: LocalMap
 ) -> List[Edge]:
-    """Find loop closures of a settled graph where it has none.
+    """Find loop closures where an optimized graph has none.
 
     Args:
-        poses: (N, 3), of all keyframes in the map frame.
-        edges: Of the graph.
-        clouds: Of all keyframes.
-        local_map: Is overwritten.
+        poses: (N, 3), poses of all keyframes in the map frame.
+        edges: Edges of the graph.
+        clouds: Points of all keyframes, each in its base frame.
+        local_map: Working memory; overwritten.
 
     Returns:
         The verified loop edges.

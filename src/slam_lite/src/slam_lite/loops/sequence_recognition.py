@@ -1,8 +1,8 @@
 """Sequence-based place recognition: hypotheses that stay consistent along a long path, after the last scan.
 
-One query suggests many places, of which a building contributes some from each of its sides. Only the right
-ones stay consistent, query after query, over some sixty metres. They are guesses, at which segments are
-matched (see ``revisited_segments``).
+One query returns many places, including places at different sides of the same building. Only correct ones
+stay consistent over some sixty metres of queries. They are initial guesses for matching segments (see
+``revisited_segments``).
 """
 
 import math
@@ -42,17 +42,17 @@ _HYPOTHESIS_INFORMATION, _MAX_CHI_SQUARE = np.diag([1.0, 1.0, 0.05**-2]), 16.3
 def recognize_sequences(
     poses: np.ndarray, edges: Edges, clouds: Sequence[PointCloud], trajectory: TrackedTrajectory
 ) -> List[PlaceHypothesis]:
-    """Recognize places where no loop closure is near.
+    """Recognize revisited places that have no loop closure nearby.
 
     Args:
-        poses: (N, 3), of the settled graph.
-        edges: Of the graph.
-        clouds: Of all keyframes.
-        trajectory: As tracked.
+        poses: (N, 3), poses of all keyframes in the map frame, optimized.
+        edges: Edges of the graph.
+        clouds: Points of all keyframes, each in its base frame.
+        trajectory: Trajectory of the front end.
 
     Returns:
         For each query the best hypothesis, if it is consistent along a long path, differs from the graph, and
-        is possible by its covariance.
+        is possible given the graph's covariance.
     """
     rows = _query_all(clouds, trajectory, edges.nodes[edges.is_loop, 1])
     nodes, measured = rows[:, :2].astype(np.int64), rows[:, 2:5]

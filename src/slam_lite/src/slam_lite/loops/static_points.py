@@ -1,6 +1,6 @@
 """Removal of moving points from the scans of a segment.
 
-Outdoors, people who walk by may be half of the points of a scan, and match nothing that was seen before.
+Outdoors, pedestrians may cause half of the points of a scan, which match nothing seen before.
 """
 
 from typing import Sequence
@@ -18,7 +18,16 @@ _CELL, _SCANS_APART = 0.3, 5
 
 
 def static_points(scans: Sequence[PosedCloud]) -> PointCloud:
-    """Merge scans, each with its pose, and keep their static points; all points if there are many."""
+    """Merge the static points of scans.
+
+    Dense scans are merged without a check: few of their points are on moving objects.
+
+    Args:
+        scans: Points of each scan with its pose in a common frame.
+
+    Returns:
+        Points in the common frame.
+    """
     merged = merge_clouds(scans)
     if len(merged) == 0 or len(scans) <= _SCANS_APART or len(merged) > _SPARSE * len(scans):
         return merged

@@ -1,4 +1,4 @@
-"""The trajectory as the front end tracked it from scan to scan, without loop closures."""
+"""The trajectory of the front end: keyframe poses chained from scan matching, without loop closures."""
 
 from dataclasses import dataclass
 from typing import Tuple
@@ -15,10 +15,10 @@ _BREAK_SIGMA, _BREAK_LENGTH = 0.4, 200.0
 
 @dataclass(frozen=True, eq=False)
 class TrackedTrajectory:
-    """Keyframes along the path of the robot.
+    """Keyframe poses along the path of the robot.
 
     Attributes:
-        poses: (N, 3), as tracked.
+        poses: (N, 3), poses in the track frame, rows ``[x, y, yaw]``.
         travelled: (N,), path length up to each keyframe [m].
     """
 
@@ -26,11 +26,19 @@ class TrackedTrajectory:
     travelled: np.ndarray
 
     def between(self, first: int, second: int) -> Pose2:
-        """Pose of one keyframe in another."""
+        """Return the pose of keyframe ``second`` in keyframe ``first``."""
         return relative_pose(self.poses, first, second)
 
     def within(self, keyframe: int, reach: float) -> Tuple[int, int]:
-        """The first and the last keyframe within ``reach`` metres along the path."""
+        """Find the keyframes near another one along the path.
+
+        Args:
+            keyframe: Index of the keyframe.
+            reach: Largest path length to each side [m].
+
+        Returns:
+            Indices of the first and the last keyframe.
+        """
         ends = np.searchsorted(self.travelled, self.travelled[keyframe] + np.array([-reach, reach]))
         return int(ends[0]), int(ends[1]) - 1
 
@@ -40,7 +48,12 @@ class TrackedTrajectory:
 
 
 def tracked_trajectory(first: np.ndarray, edges: Edges) -> TrackedTrajectory:
-    """Chain the steps of a graph, from the first keyframe's pose ``first`` (3,)."""
+    """Chain the steps of a graph.
+
+    Args:
+        first: (3,), pose of the first keyframe, ``[x, y, yaw]``.
+        edges: Edges of the graph, of which loop edges are ignored.
+    """
     steps = np.flatnonzero(~edges.is_loop)
     steps = steps[np.argsort(edges.nodes[steps, 1])]
     measured = edges.measured[steps]

@@ -1,4 +1,4 @@
-"""Visibility check: scans must not see through what others measured as walls."""
+"""Visibility check: scans must not pass through walls that other scans measured."""
 
 import math
 from typing import Iterable, Sequence, Tuple
@@ -21,7 +21,15 @@ _MAX_POINTS, _SCAN_STEP = 500, 4
 
 
 def seen_through_fraction(walls: PointCloud, scans: Iterable[PosedCloud]) -> float:
-    """Fraction, 0 to 1, of the points visible from some scans, each with its pose, that these see through."""
+    """Compute which fraction of wall points scans see through.
+
+    Args:
+        walls: Points of the walls.
+        scans: Points of each scan, with the pose of its base in the frame of ``walls``.
+
+    Returns:
+        Fraction, 0 to 1, of the points that are visible from the scans.
+    """
     through, hit = 0, 0
     for scan, base_pose in scans:
         inverse = base_pose.inverse()
@@ -33,12 +41,15 @@ def seen_through_fraction(walls: PointCloud, scans: Iterable[PosedCloud]) -> flo
 def visibility_conflict(
     place: Sequence[PosedCloud], recent: Sequence[PosedCloud], recent_in_place: Pose2
 ) -> float:
-    """Fraction, 0 to 1, of the walls of one segment that the scans of the other see through; the larger one.
+    """Compute how much two segments contradict each other by what is visible.
 
     Args:
         place: Scans of one segment, with their poses in its frame.
         recent: Scans of the other segment, with their poses in its frame.
         recent_in_place: Frame of the second segment in that of the first.
+
+    Returns:
+        Fraction, 0 to 1, of the walls of one segment that scans of the other see through; the larger of both.
     """
     recent = [(cloud, recent_in_place @ pose) for cloud, pose in recent]
     return max(

@@ -1,9 +1,9 @@
-"""Correlative scan matching: the best pose of a whole window.
+"""Correlative scan matching: finds the best pose of a whole search window.
 
-E. Olson, "Real-time correlative scan matching", ICRA 2009: a coarse grid of maxima bounds the score of all
-poses inside a coarse cell from above, so that only promising cells are searched finely. With a grid for each
-halving of the cell this is the branch and bound of W. Hess et al., "Real-time loop closure in 2D LIDAR SLAM",
-ICRA 2016.
+E. Olson, "Real-time correlative scan matching", ICRA 2009: a coarse grid of maxima gives an upper bound of
+the score of all poses inside a coarse cell, so that only promising cells are searched finely. With a grid for
+each halving of the cell this is the branch and bound of W. Hess et al., "Real-time loop closure in 2D LIDAR
+SLAM", ICRA 2016.
 """
 
 import math
@@ -20,11 +20,11 @@ from slam_lite.point_cloud import PointCloud
 
 @dataclass(frozen=True)
 class SearchWindow:
-    """Poses to search around a guess.
+    """Search window around a guess.
 
     Attributes:
-        distance: To each side in x and y [m].
-        angle: To each side [rad].
+        distance: Half the width in x and y [m].
+        angle: Half the range of headings [rad].
     """
 
     distance: float
@@ -33,15 +33,15 @@ class SearchWindow:
 
 @dataclass(frozen=True)
 class Peak:
-    """The best pose of a window.
+    """Best pose of a search window.
 
     Attributes:
-        base_pose: Pose of the base in the local map's frame.
+        base_pose: Pose of the base in the frame of the local map.
         score: Mean likelihood of the points, 0 to 1.
         is_unique: Whether no pose elsewhere in the window scores nearly as well, except along
             ``degenerate_direction``.
-        degenerate_direction: Unit vector (2,), along the map's axes, along which other poses score nearly as
-            well, as in a smooth corridor; zeros if there is none.
+        degenerate_direction: Unit vector (2,), along the axes of the local map, along which other poses score
+            nearly as well, as in a smooth corridor; zeros if there is none.
     """
 
     base_pose: Pose2
@@ -60,17 +60,20 @@ def search_exhaustively(
 ) -> Pose2:
     """Find the best pose of a small window, in steps of two cells.
 
-    To overrule the guess takes a share of the scan: a person who walks ahead of the robot covers a few beams,
-    whereas all beams show a wheel slip.
+    A pose replaces the guess only if a certain share of the scan supports it: a person ahead of the robot
+    affects a few beams, whereas a wheel slip affects all of them.
 
     Args:
-        cloud: The scan's points in the base frame.
-        local_map: To match to.
-        guess: Expected pose of the base.
-        window: Around the guess.
-        variance: (3,), m^2, m^2, rad^2, of the guess.
+        cloud: Points of the scan, in the base frame.
+        local_map: Map to match to.
+        guess: Expected pose of the base in the frame of the local map.
+        window: Search window around the guess.
+        variance: (3,), of the guess [m^2, m^2, rad^2].
         unseen_fraction: Fraction of the scan, 0 to 1, that the map does not cover, and that is likely to
             match something else at another pose.
+
+    Returns:
+        Best pose of the base in the frame of the local map.
     """
     best = _search_exhaustively(
         local_map.layers,
@@ -94,9 +97,16 @@ _OVERRULING_SHARE, _OVERRULING_POINTS, _HALF_CHI_SQUARE = 0.15, 12.0, 9.0
 def score_poses(
     cloud: PointCloud, local_map: LocalMap, poses: Sequence[Pose2], match_sides: bool = False
 ) -> np.ndarray:
-    """Mean likelihood (N,), 0 to 1, of the points at each pose of the base.
+    """Compute the mean likelihood of the points at each of several poses.
 
-    If ``match_sides``, a point on the other side of a wall scores nothing, however near it is.
+    Args:
+        cloud: Points of the scan, in the base frame.
+        local_map: Map to match to.
+        poses: Poses of the base in the frame of the local map, N.
+        match_sides: Whether a point on the other side of a wall has likelihood 0, even if it is near.
+
+    Returns:
+        (N,), 0 to 1.
     """
     in_grid = np.array([local_map.to_grid(pose) for pose in poses])
     return _scores(local_map.layers, cloud.points_xy, cloud.normals_xy, in_grid, match_sides)
@@ -172,15 +182,18 @@ def _sum_at(grid, points, x, y, yaw, resolution):
 def search_branch_and_bound(
     cloud: PointCloud, local_map: LocalMap, guess: Pose2, window: SearchWindow, min_score: float, apart: float
 ) -> Optional[Peak]:
-    """Find the best pose of a wide window, to one cell and about one cell's width at the far points.
+    """Find the best pose of a wide window.
+
+    The resolution is one cell, and an angle that moves distant points by about one cell.
 
     Args:
-        cloud: The scan's points in the base frame.
-        local_map: To match to.
-        guess: Middle of the window.
-        window: Around the guess.
+        cloud: Points of the scan, in the base frame.
+        local_map: Map to match to.
+        guess: Middle of the window, in the frame of the local map.
+        window: Search window around the guess.
         min_score: Least score, 0 to 1.
-        apart: Poses nearer than this [m] and 0.5 rad to the best one are no rivals of it.
+        apart: Distance [m] from the best pose, or 0.5 rad of heading, above which another pose counts as
+            elsewhere (see ``Peak.is_unique``).
 
     Returns:
         The best pose, None if none scores ``min_score``.

@@ -1,4 +1,4 @@
-"""The local map: the points of some scans, indexed by a grid of nearest points, and a coarser one.
+"""The local map: the points of some scans, indexed by a fine and a coarse grid of nearest points.
 
 Two grids as in W. Hess et al., "Real-time loop closure in 2D LIDAR SLAM", ICRA 2016, and its 3D version: a
 fine one around the robot, and a coarse one with the range of lasers outdoors.
@@ -38,13 +38,13 @@ Layer = Tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, float, np.ndarray]
 
 
 class LocalMap:
-    """Points around a centre; each grid cell stores the nearest one and the likelihood of a hit.
+    """Points around a centre; each grid cell stores the nearest point and the likelihood of a hit.
 
     The grid is square, ``2 * reach`` metres wide, in the frame of the poses given to ``add``.
 
     Attributes:
         resolution: Cell size [m].
-        coarse_map: A coarser map of the same points and of those farther away, if there is one.
+        coarse_map: Coarser map of the same points and of those farther away; None if there is none.
         corner: (2,), lower left corner of the grid [m].
         nearest: int32 (rows, cols), index of the nearest point of each cell, -1 if none is near.
         likelihood: uint8 (rows, cols), likelihood of a hit in each cell, 0 to 255.
@@ -56,6 +56,13 @@ class LocalMap:
     def __init__(
         self, resolution: float = 0.05, reach: float = 25.0, coarse_map: "Optional[LocalMap]" = None
     ):
+        """Create an empty map.
+
+        Args:
+            resolution: Cell size [m].
+            reach: Half the width of the grid [m].
+            coarse_map: Map that gets the same points, with larger cells and a larger reach.
+        """
         cells = math.ceil(2.0 * reach / resolution) + 2 * BORDER_CELLS
         self.resolution = resolution
         self.coarse_map = coarse_map
@@ -67,7 +74,11 @@ class LocalMap:
         self.count = 0
 
     def clear(self, center: Pose2) -> None:
-        """Remove all points and move the grid so that ``center`` lies in its middle."""
+        """Remove all points and centre the grid at a pose.
+
+        Args:
+            center: Pose whose position becomes the middle of the grid.
+        """
         half = 0.5 * len(self.nearest) * self.resolution
         self.corner = np.array([center.x - half, center.y - half])
         self.nearest.fill(-1)
@@ -77,7 +88,12 @@ class LocalMap:
             self.coarse_map.clear(center)
 
     def add(self, cloud: PointCloud, base_pose: Pose2) -> None:
-        """Add a scan at ``base_pose``; points outside of the grid are dropped."""
+        """Add a scan; points outside of the grid are ignored.
+
+        Args:
+            cloud: Points of the scan, in the base frame.
+            base_pose: Pose of the base in the frame of the map.
+        """
         needed = self.count + len(cloud)
         if needed > len(self.points_xy):
             self.points_xy = _grown(self.points_xy, needed)
@@ -101,11 +117,15 @@ class LocalMap:
 
     @property
     def is_empty(self) -> bool:
-        """Whether there are no points, in the coarse map neither."""
+        """Whether neither this map nor the coarse one has points."""
         return self.count == 0 and (self.coarse_map is None or self.coarse_map.is_empty)
 
     def layer_for(self, cloud: PointCloud) -> "LocalMap":
-        """The map to search a cloud in: this one, or the coarse one if too many points are far away."""
+        """Return the map to search a cloud in: this one, or the coarse one if too many points are far away.
+
+        Args:
+            cloud: Points to search, in the base frame.
+        """
         far = np.hypot(cloud.points_xy[:, 0], cloud.points_xy[:, 1]) > _NEAR
         return self.coarse_map if self.coarse_map is not None and np.mean(far) > _FAR_SHARE else self
 
@@ -120,15 +140,15 @@ class LocalMap:
 
     @property
     def layers(self) -> Tuple[Layer, Layer]:
-        """This map and the coarse one, if there is one, for kernels."""
+        """This map and the coarse one, as tuples for numba kernels; an empty one if there is no coarse map."""
         return _layer(self, self), _layer(self.coarse_map or _EMPTY, self)
 
     def to_grid(self, pose: Pose2) -> np.ndarray:
-        """Return a pose as ``[x, y, yaw]``, metres from the grid's corner."""
+        """Convert a pose to ``[x, y, yaw]``, in metres from the corner of the grid."""
         return np.array([pose.x - self.corner[0], pose.y - self.corner[1], pose.yaw])
 
     def from_grid(self, pose: np.ndarray) -> Pose2:
-        """Return the pose of ``[x, y, yaw]``, metres from the grid's corner; the inverse of ``to_grid``."""
+        """Convert ``[x, y, yaw]``, in metres from the corner of the grid, to a pose."""
         return Pose2(float(pose[0] + self.corner[0]), float(pose[1] + self.corner[1]), float(pose[2]))
 
 
@@ -150,11 +170,12 @@ def _read_only(array: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class Match:
-    """The result of matching a scan to a local map.
+    """Result of matching a scan to a local map.
 
     Attributes:
-        base_pose: Pose of the base in the local map's frame.
-        information: (3, 3), 1 / (m, m, rad)^2, of base_pose's x, y, yaw along the map's axes.
+        base_pose: Pose of the base in the frame of the local map.
+        information: (3, 3), of x, y and yaw of ``base_pose`` along the axes of the local map, 1 / (m, m,
+            rad)^2.
         response: Fraction of the scan's points, 0 to 1, that lie on the map's surfaces.
     """
 
@@ -164,15 +185,21 @@ class Match:
 
 
 def long_range_map() -> LocalMap:
-    """Return an empty local map with a coarse map that has the range of lasers outdoors."""
+    """Create an empty local map with a coarse map that has the range of lasers outdoors."""
     return LocalMap(coarse_map=LocalMap(_COARSE_RESOLUTION, _COARSE_REACH))
 
 
 @numba.njit(cache=True, nogil=True)
 def cell_of(layers, x, y):
-    """Number of the finest layer that contains a point at (x, y) metres, with the point's row and column.
+    """Find the cell of a point in the finest layer that contains it.
 
-    The number is -1 for a point outside of both.
+    Args:
+        layers: Layers of a local map (``LocalMap.layers``).
+        x: Position from the corner of the finest grid [m].
+        y: Position from the corner of the finest grid [m].
+
+    Returns:
+        Number of the layer (-1 if the point is outside of both), row and column.
     """
     for number in range(2):
         nearest, _, _, _, resolution, shift = layers[number]
@@ -185,7 +212,16 @@ def cell_of(layers, x, y):
 
 @numba.njit(cache=True, nogil=True)
 def are_far(layers, points, pose):
-    """Which points (N,) are outside of the finest layer."""
+    """Find the points outside of the finest layer.
+
+    Args:
+        layers: Layers of a local map (``LocalMap.layers``).
+        points: (N, 2), in the base frame [m].
+        pose: (3,), pose of the base from the corner of the finest grid (``LocalMap.to_grid``).
+
+    Returns:
+        (N,) booleans.
+    """
     is_far = np.empty(len(points), dtype=np.bool_)
     c, s = math.cos(pose[2]), math.sin(pose[2])
     for p in range(len(points)):
@@ -196,7 +232,14 @@ def are_far(layers, points, pose):
 
 @numba.njit(cache=True, nogil=True, inline="always")
 def turned_cosine(normal, map_normal, c, s):
-    """Cosine between a normal, rotated by the angle of cosine c and sine s, and a normal of the map."""
+    """Compute the cosine between a rotated normal and a normal of the map.
+
+    Args:
+        normal: (2,), unit normal in the base frame.
+        map_normal: (2,), unit normal in the frame of the map.
+        c: Cosine of the heading of the base.
+        s: Sine of the heading of the base.
+    """
     nx, ny = map_normal[0], map_normal[1]
     return c * (normal[0] * nx + normal[1] * ny) + s * (normal[0] * ny - normal[1] * nx)
 

@@ -1,8 +1,8 @@
 """Continuous refinement of a pose: point-to-line ICP against a local map.
 
-A. Censi, "An ICP variant using a point-to-line metric", ICRA 2008; the map's points and their normals define
+A. Censi, "An ICP variant using a point-to-line metric", ICRA 2008. The map's points and their normals define
 the lines, and each residual is weighted by Geman and McClure's robust cost. Points are not matched to the
-other side of a wall: that would bring the spaces on its two sides closer by the wall's thickness.
+other side of a wall: that would move the two sides closer by the thickness of the wall.
 """
 
 import math
@@ -36,14 +36,17 @@ _CORNER_WEIGHT = 0.2
 def refine(
     cloud: PointCloud, local_map: LocalMap, start: Pose2, prior: Pose2, prior_information: np.ndarray
 ) -> Match:
-    """Find the pose near ``start`` at which the points lie best on the map's surfaces.
+    """Find the pose near an initial one at which the points match the map's surfaces best.
 
     Args:
-        cloud: The scan's points in the base frame.
-        local_map: To match to.
-        start: Initial pose of the base in the local map's frame.
-        prior: Expected pose of the base.
-        prior_information: (3, 3), of ``prior``; zeros for no prior.
+        cloud: Points of the scan, in the base frame.
+        local_map: Map to match to.
+        start: Initial pose of the base in the frame of the local map.
+        prior: Expected pose of the base in the frame of the local map.
+        prior_information: (3, 3), of ``prior``, 1 / (m, m, rad)^2; zeros for no prior.
+
+    Returns:
+        The match; its information includes that of the prior.
     """
     pose, information, response = _refine(
         local_map.layers,

@@ -25,16 +25,16 @@ _ROUNDING = 1e-6
 
 
 class MatchingError(PlanarError):
-    """A custom scan matcher failed."""
+    """A custom scan matcher failed or returned an invalid result."""
 
 
 @dataclass(frozen=True, eq=False)
 class Prediction:
-    """The pose at which a scan is expected, by odometry.
+    """Pose at which a scan is expected, from odometry.
 
     Attributes:
-        base_pose: Pose of the base in the local map's frame.
-        variance: (3,), m^2, m^2, rad^2, of odometry.
+        base_pose: Pose of the base in the frame of the local map.
+        variance: (3,), of odometry [m^2, m^2, rad^2].
         search_variance: (3,), the same, but larger where odometry reports no motion and may be stuck.
         unseen_fraction: Fraction of the scan, 0 to 1, in directions that the last keyframe does not cover,
             and that matches nothing in the map.
@@ -47,7 +47,7 @@ class Prediction:
 
     @property
     def information(self) -> np.ndarray:
-        """Information (3, 3) of odometry."""
+        """Information (3, 3) of odometry, 1 / (m, m, rad)^2."""
         return np.diag(1.0 / self.variance)
 
     @property
@@ -65,23 +65,23 @@ class Prediction:
 
 
 class ScanMatcher(Protocol):
-    """Matches scans to a local map. One is created for each trajectory, also after relocalization."""
+    """Matches scans to a local map; one is created for each trajectory, also after relocalization."""
 
     def __init__(self, settings: MapperSettings): ...
 
     def match(self, cloud: PointCloud, local_map: LocalMap, prediction: Prediction) -> Match:
         """Find the pose near the prediction at which a scan matches the map.
 
-        A match with a poor response is searched again in a wide window; below ``min_response`` odometry is
-        used instead. The arguments are read-only.
+        If the response is poor, a wide window is searched; below ``min_response`` odometry is used instead.
+        The arguments are read-only.
 
         Args:
-            cloud: The scan's points and surface normals in the base frame.
-            local_map: Of the keyframes around.
-            prediction: By odometry; to be weighted against the scan.
+            cloud: Points and surface normals of the scan, in the base frame.
+            local_map: Points of the keyframes around the robot.
+            prediction: Pose from odometry, to be weighted against the scan.
 
         Returns:
-            The pose of the base, its information and the response.
+            Pose of the base in the frame of the local map, its information and the response.
         """
         ...
 
@@ -90,12 +90,20 @@ CONTRACT = PluginContract("scan matcher", ScanMatcher, MapperSettings, "slam_lit
 
 
 def scan_matcher_of(settings: MapperSettings) -> ScanMatcher:
-    """Create the matcher that the settings choose. Raises MatchingError if a custom one cannot be created."""
+    """Create the matcher that the settings select.
+
+    Args:
+        settings: ``matcher_plugin``, and the settings that are passed to the matcher.
+
+    Raises:
+        SettingsError: A custom matcher does not fulfil the contract.
+        MatchingError: A custom matcher cannot be created.
+    """
     return GuardedMatcher(settings) if settings.matcher_plugin else CorrelativeMatcher(settings)
 
 
 class CorrelativeMatcher:
-    """The default matcher: exhaustive search of a window, then point-to-line refinement."""
+    """Default matcher: exhaustive search of a window, then point-to-line refinement."""
 
     def __init__(self, settings: MapperSettings):
         pass
@@ -113,17 +121,29 @@ class CorrelativeMatcher:
 
 
 class GuardedMatcher:
-    """A custom matcher with read-only arguments, checked results, and errors that name it."""
+    """Wrapper of a custom matcher that passes read-only arguments, checks results and names it in errors."""
 
     def __init__(self, settings: MapperSettings):
-        """Raises SettingsError with what it lacks, MatchingError if it cannot be created."""
+        """Create the custom matcher.
+
+        Args:
+            settings: ``matcher_plugin``, and the settings that are passed to the matcher.
+
+        Raises:
+            SettingsError: It does not fulfil the contract.
+            MatchingError: It cannot be created.
+        """
         self._name = settings.matcher_plugin
         make: Any = load_plugin(self._name, CONTRACT)
         with errors_raised_as(self._name, MatchingError):
             self._matcher = make(settings)
 
     def match(self, cloud: PointCloud, local_map: LocalMap, prediction: Prediction) -> Match:
-        """Call the custom matcher. Raises MatchingError for what goes wrong in it."""
+        """Call the custom matcher (see ``ScanMatcher.match``).
+
+        Raises:
+            MatchingError: It raised, or returned an invalid result.
+        """
         with errors_raised_as(self._name, MatchingError):
             match = self._matcher.match(_read_only(cloud), _read_only(local_map), _read_only(prediction))
             problem = _problem_of(match)

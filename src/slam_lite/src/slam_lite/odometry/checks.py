@@ -1,4 +1,4 @@
-"""Checks of odometry: whether the robot stands still, and whether its motion since the last scan is known."""
+"""Checks of odometry: standstill of the robot, and discontinuities since the last scan."""
 
 import math
 
@@ -17,20 +17,35 @@ _AT_ZERO = 0.05
 
 
 def has_moved(motion: Pose2, threshold: float = _STANDSTILL) -> bool:
-    """Whether a motion is at least ``threshold`` metres or radians."""
+    """Check whether a motion exceeds a threshold.
+
+    Args:
+        motion: Pose of the base relative to an earlier one.
+        threshold: Least distance [m] or rotation [rad].
+    """
     return math.hypot(motion.x, motion.y) >= threshold or abs(motion.yaw) >= threshold
 
 
 class MotionFilter:
-    """Drops scans of a standing robot, except one per ``interval`` seconds (cartographer: MotionFilter)."""
+    """Drops scans of a standing robot, except one per interval (cartographer: MotionFilter)."""
 
     def __init__(self, interval: float):
+        """Create the filter; it keeps the first scan.
+
+        Args:
+            interval: Period of the scans that are kept while the robot stands still [s].
+        """
         self._interval = interval
         self._stamp = -math.inf
         self._base_in_odom = Pose2()
 
     def is_similar(self, base_in_odom: Pose2, stamp: float) -> bool:
-        """Whether a scan can be dropped; otherwise later scans are compared with this one."""
+        """Check whether a scan can be dropped; otherwise later scans are compared with this one.
+
+        Args:
+            base_in_odom: Odometry pose of the base at the scan.
+            stamp: Time of the scan [s].
+        """
         still = not has_moved(self._base_in_odom.inverse() @ base_in_odom)
         if still and 0.0 <= stamp - self._stamp < self._interval:
             return True
@@ -41,7 +56,7 @@ class MotionFilter:
 class DiscontinuityDetector:
     """Detects that odometry does not relate the robot's pose to that of the last scan.
 
-    That is the case if odometry jumps farther than a robot can drive, or if scans pause for long or time
+    This is the case if odometry jumps farther than a robot can drive, or if scans pause for long or time
     jumps back while odometry stands still or restarts at zero: the robot may have been carried.
     """
 
@@ -50,7 +65,12 @@ class DiscontinuityDetector:
         self._base_in_odom = Pose2()
 
     def is_discontinuous(self, base_in_odom: Pose2, stamp: float) -> bool:
-        """Whether the motion since the scan of the last call is unknown."""
+        """Check whether the motion since the scan of the last call is unknown.
+
+        Args:
+            base_in_odom: Odometry pose of the base at the scan.
+            stamp: Time of the scan [s].
+        """
         motion, elapsed = self._base_in_odom.inverse() @ base_in_odom, stamp - self._stamp
         self._stamp, self._base_in_odom = stamp, base_in_odom
         if math.isnan(elapsed):

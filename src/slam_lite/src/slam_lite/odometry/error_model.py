@@ -1,9 +1,9 @@
-"""Error model of odometry: its variance by the settings, and its bias as scan matching reveals it.
+"""Error model of odometry: variance from the settings, and bias estimated from scan matching.
 
 The bias (heading per metre and per radian, distance per metre) is estimated by least squares and removed; the
-remaining random error by its mean square (after A. Censi et al., "Simultaneous calibration of odometry and
-sensor parameters for mobile robots", IEEE T-RO 2013). So the robot keeps its heading where there is little to
-match.
+remaining random error is estimated by its mean square (after A. Censi et al., "Simultaneous calibration of
+odometry and sensor parameters for mobile robots", IEEE T-RO 2013). So the robot keeps its heading where there
+is little to match.
 """
 
 import math
@@ -25,9 +25,15 @@ _SLIP_SIGMAS = 5.0
 
 
 class OdometryErrorModel:
-    """Removes the learned bias of odometry from motions, and gives the variance of the rest."""
+    """Estimates and removes the bias of odometry, and computes the variance of the remaining error."""
 
     def __init__(self, settings: MapperSettings):
+        """Create the model without bias.
+
+        Args:
+            settings: Errors of odometry: ``odom_xy_per_distance``, ``odom_yaw_per_distance``,
+                ``odom_xy_per_turn`` and ``odom_yaw_per_turn``.
+        """
         self._settings = settings
         # Normal equations of the bias: of heading by distance and turn, and of distance.
         self._yaw_information, self._distance_information = np.diag(_PRIOR[:2] ** -2), _PRIOR[2] ** -2
@@ -36,19 +42,26 @@ class OdometryErrorModel:
         self._squares, self._count = np.full(2, _PRIOR_COUNT), _PRIOR_COUNT
 
     def corrected(self, motion: Pose2) -> Pose2:
-        """Return a motion without the learned bias."""
+        """Remove the estimated bias from a motion.
+
+        Args:
+            motion: Pose of the base relative to the last scan, from odometry.
+        """
         per_distance, per_turn = np.linalg.solve(self._yaw_information, self._yaw_sum)
         x = motion.x * (1.0 + self._distance_sum / self._distance_information)
         return Pose2(x, motion.y, motion.yaw + per_distance * motion.x + per_turn * motion.yaw)
 
     def variance(self, motion: Pose2) -> np.ndarray:
-        """Variances (3,), m^2, m^2, rad^2, of a corrected motion."""
+        """Compute the variances (3,) of a corrected motion [m^2, m^2, rad^2]."""
         xy, yaw = np.clip(self._squares / self._count, _MIN_SHARE, 1.0)
         floor = _FLOOR**2
         return (self.nominal_variance(motion) - floor) * [xy, xy, yaw] + floor
 
     def nominal_variance(self, motion: Pose2) -> np.ndarray:
-        """Variances (3,), m^2, m^2, rad^2, by the settings: correlated within a leg, independent beyond."""
+        """Compute the variances (3,) of a motion according to the settings [m^2, m^2, rad^2].
+
+        Errors are correlated within a leg of the trajectory, and independent beyond.
+        """
         settings = self._settings
         distance, turn = math.hypot(motion.x, motion.y), abs(motion.yaw)
         by_distance, by_turn = distance * max(distance, _LEG_DISTANCE), turn * max(turn, _LEG_TURN)
@@ -57,7 +70,12 @@ class OdometryErrorModel:
         return np.array([xy, xy, yaw]) + _FLOOR**2
 
     def learn(self, motion: Pose2, matched: Pose2) -> None:
-        """Update bias and random error by a ``motion`` of odometry that scan matching measured reliably."""
+        """Update the estimates of bias and random error.
+
+        Args:
+            motion: Pose of the base relative to the last scan, from odometry.
+            matched: The same pose from a reliable scan match.
+        """
         residual = (self.corrected(motion).inverse() @ matched).as_array()
         variance, nominal = self.variance(motion), self.nominal_variance(motion)
         if (residual**2 > _SLIP_SIGMAS**2 * nominal).any():

@@ -12,9 +12,15 @@ from slam_lite.state import save_state
 
 
 class FileServices:
-    """Offers services that save the map and the state, and load a state."""
+    """Services that save the map, and save and load the state."""
 
     def __init__(self, mapper: ThreadSafeMapper, maps: MapPublisher):
+        """Advertise the services.
+
+        Args:
+            mapper: Mapper whose state is saved and loaded.
+            maps: Renders the map to save.
+        """
         self._mapper = mapper
         self._maps = maps
         handlers = {

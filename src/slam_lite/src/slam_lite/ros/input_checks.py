@@ -1,4 +1,4 @@
-"""Checks of the input that log warnings, throttled."""
+"""Checks of the node's input, which log throttled warnings."""
 
 from typing import Dict
 
@@ -19,12 +19,22 @@ class LaserMountingCheck:
     """Rejects lasers that are not mounted planar."""
 
     def __init__(self, transforms: Transforms, base_frame: str):
+        """Create the check.
+
+        Args:
+            transforms: Source of the transform from base to laser.
+            base_frame: Frame of the robot.
+        """
         self._transforms = transforms
         self._base_frame = base_frame
         self._heights: Dict[str, float] = {}
 
     def is_planar(self, laser_frame: str) -> bool:
-        """Whether the laser's axis points straight up or down; otherwise log a warning."""
+        """Check whether the laser's axis points straight up or down; log a warning if not.
+
+        Args:
+            laser_frame: Frame of the scan.
+        """
         if laser_frame not in self._heights:
             mounting = self._transforms.matrix(self._base_frame, laser_frame)
             self._heights[laser_frame] = 1.0 if mounting is None else float(mounting[2, 2])
@@ -41,13 +51,17 @@ class LaserMountingCheck:
 
 
 class OdometryCheck:
-    """Warns of odometry with larger errors than its settings state."""
+    """Logs a warning if odometry has larger errors than its settings state."""
 
     def __init__(self) -> None:
         self._mean_chi_square = 0.0
 
     def update(self, chi_square: float) -> None:
-        """Add the ``odometry_chi_square`` of one scan (see PoseUpdate)."""
+        """Add one scan.
+
+        Args:
+            chi_square: ``PoseUpdate.odometry_chi_square`` of the scan.
+        """
         self._mean_chi_square += (min(chi_square, 1e3) - self._mean_chi_square) / AVERAGED_SCANS
         if self._mean_chi_square > MAX_MEAN_CHI_SQUARE:
             rospy.logwarn_throttle(

@@ -29,6 +29,12 @@ class MapPublisher:
     """
 
     def __init__(self, settings: NodeSettings, mapper: ThreadSafeMapper):
+        """Advertise the topics and the service, and start the thread.
+
+        Args:
+            settings: ``map_update_interval``, extent and frame of the map.
+            mapper: Source of the keyframes to render.
+        """
         self._settings = settings
         self._mapper = mapper
         self._rendering = threading.Lock()
@@ -43,13 +49,17 @@ class MapPublisher:
         rospy.on_shutdown(self._is_due.set)
 
     def on_scan(self, stamp: float) -> None:
-        """A scan was inserted: the next map is due ``map_update_interval`` after the last, by the stamps."""
+        """Mark the next map as due, ``map_update_interval`` after the last one.
+
+        Args:
+            stamp: Time of the inserted scan [s].
+        """
         if not 0.0 <= stamp - self._stamp < self._settings.map_update_interval:
             self._stamp = stamp
             self._is_due.set()
 
     def grid(self) -> Optional[OccupancyGrid]:
-        """Render the present map; None before the first scan."""
+        """Render the present map; returns None before the first scan."""
         renderer, evidence, _ = self._mapper.render_job()
         with self._rendering:
             renderer.update(evidence)

@@ -15,6 +15,13 @@ class MapTransformBroadcaster:
     """Broadcasts map -> odom every ``transform_publish_period``, unless that is 0."""
 
     def __init__(self, settings: NodeSettings, mapper: ThreadSafeMapper, transforms: Transforms):
+        """Start broadcasting.
+
+        Args:
+            settings: Frames, ``transform_publish_period`` and ``tf_delay``.
+            mapper: Source of the odometry frame in the map.
+            transforms: Broadcasts the transform.
+        """
         self._settings = settings
         self._mapper = mapper
         self._transforms = transforms

@@ -27,7 +27,7 @@ SCAN_QUEUE_SIZE = 5
 
 
 class SlamNode:
-    """Passes scans from the queue's thread to the mapper, whose results other objects publish."""
+    """Node that passes scans to the mapper; other objects publish the results."""
 
     def __init__(self):
         self._step = LockstepClient.of_node()
@@ -135,4 +135,5 @@ def _log_ignored_parameters():
 
 
 def main():
+    """Run the node ``slam_gmapping``."""
     run("slam_gmapping", SlamNode)

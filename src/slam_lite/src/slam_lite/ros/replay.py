@@ -21,7 +21,14 @@ from slam_lite.scan_trajectory import ScanTrajectory
 
 
 def main(arguments: Optional[List[str]] = None) -> int:
-    """Return 0; 1 if the bag is truncated and the part before is saved; 2 if nothing was mapped."""
+    """Map a recorded bag.
+
+    Args:
+        arguments: Command line without the program's name; by default that of the process.
+
+    Returns:
+        Exit code: 0; 1 if the bag is truncated and the part before is saved; 2 if nothing was mapped.
+    """
     return run_replay(_parser(), _replay, arguments)
 
 

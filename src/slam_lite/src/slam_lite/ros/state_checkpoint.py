@@ -18,9 +18,14 @@ CHECKPOINT_SECONDS, MAX_TIME_SHARE = 2.0, 0.05
 
 
 class StateCheckpointer:
-    """Saves the mapper's state in its own thread, and first recovers what a crashed node has left."""
+    """Saves the mapper's state in its own thread, after recovering the checkpoint of a crashed node."""
 
     def __init__(self, mapper: ThreadSafeMapper):
+        """Recover the last checkpoint, if there is one, and start the thread.
+
+        Args:
+            mapper: Mapper whose state is saved.
+        """
         self._mapper = mapper
         self._checkpoint = FileCheckpoint()
         self._is_due = threading.Event()
@@ -30,7 +35,11 @@ class StateCheckpointer:
         rospy.on_shutdown(self._is_due.set)
 
     def on_scan(self, stamp: float) -> None:
-        """A scan was inserted: the state is saved if the last checkpoint is old enough."""
+        """Mark a checkpoint as due if the last one is old enough.
+
+        Args:
+            stamp: Time of the inserted scan [s].
+        """
         if not 0.0 <= stamp - self._stamp < CHECKPOINT_SECONDS:
             self._stamp = stamp
             self._is_due.set()

@@ -17,12 +17,12 @@ from slam_lite.state import MapState, load_state
 
 
 class RenderJob(NamedTuple):
-    """What the next map is rendered from.
+    """Input of the next map.
 
     Attributes:
-        renderer: That rendered the map before.
+        renderer: Renderer of the previous map.
         evidence: Beams and poses of all keyframes.
-        information: (3, 3), of the robot's pose, None if unknown.
+        information: (3, 3), of the robot's pose, 1 / (m, m, rad)^2; None if unknown.
     """
 
     renderer: SessionRenderer
@@ -41,6 +41,11 @@ class ThreadSafeMapper:
     """
 
     def __init__(self, settings: NodeSettings):
+        """Create a mapper without keyframes.
+
+        Args:
+            settings: Settings of the node.
+        """
         self._settings = settings
         self._lock = threading.RLock()
         self._has_new_keyframes = threading.Condition(self._lock)
@@ -53,7 +58,18 @@ class ThreadSafeMapper:
         self.odom_in_map = Pose2()
 
     def insert(self, base_in_odom: Pose2, scan: Scan) -> Optional[PoseUpdate]:
-        """Insert one scan; None if it was dropped because the robot stands still."""
+        """Insert one scan.
+
+        Args:
+            base_in_odom: Odometry pose of the base at the scan.
+            scan: The scan.
+
+        Returns:
+            Pose at the scan; None if it was dropped because the robot stands still.
+
+        Raises:
+            PlanarError: As ``Mapper.insert``.
+        """
         with self._lock:
             self._base_in_odom = base_in_odom
             if self._is_recovering:
@@ -67,7 +83,14 @@ class ThreadSafeMapper:
         return update
 
     def set_pose(self, base_in_map: Pose2) -> None:
-        """Continue from another robot pose. Raises OutOfRangeError if it is far from the map."""
+        """Continue from another robot pose.
+
+        Args:
+            base_in_map: Pose of the base in the map frame.
+
+        Raises:
+            OutOfRangeError: The pose is far from the map.
+        """
         check_pose(base_in_map, "a robot")
         with self._lock:
             if self._localizer is not None:
@@ -78,21 +101,28 @@ class ThreadSafeMapper:
                 self.odom_in_map = base_in_map @ self._base_in_odom.inverse()
 
     def render_job(self) -> RenderJob:
-        """Return what the map is to be rendered from now."""
+        """Return the input of a map of the present keyframes."""
         with self._lock:
             return RenderJob(self._renderer, self._mapper.evidence(), self._information)
 
     def state(self) -> MapState:
-        """Return all that is needed to resume later."""
+        """Return the state that is needed to resume later."""
         return self.snapshot()[0]
 
     def snapshot(self) -> Tuple[MapState, Pose2]:
-        """Return the state, and the odometry frame in its map."""
+        """Return the state, and the odometry frame in its map frame."""
         with self._lock:
             return self._mapper.state(), self.odom_in_map
 
     def load(self, path: str) -> None:
-        """Resume from a state file. Raises StateFileError."""
+        """Resume from a state file.
+
+        Args:
+            path: State file.
+
+        Raises:
+            StateFileError: The file cannot be read.
+        """
         state = load_state(path)
         settings = self._settings
         with self._lock:
@@ -101,7 +131,15 @@ class ThreadSafeMapper:
         rospy.loginfo("loaded a map of %d keyframes from %s", len(state.poses), path)
 
     def recover(self, path: str, odom_in_map: Pose2) -> None:
-        """Resume from a recent checkpoint; odometry has continued since. Raises StateFileError."""
+        """Resume from a recent checkpoint with continued odometry.
+
+        Args:
+            path: State file of the checkpoint.
+            odom_in_map: Odometry frame in the map frame at the checkpoint.
+
+        Raises:
+            StateFileError: The file cannot be read.
+        """
         self.load(path)
         with self._lock:
             self.odom_in_map, self._is_recovering = odom_in_map, True
