@@ -40,7 +40,7 @@ def shortest_paths(
 def with_average_slip(edges: Edges) -> Edges:
     """Return the edges with an average heading variance for steps with possible wheel slip.
 
-    Few of these steps have slipped, so the sum of their own variances would overestimate the drift.
+    Few of these steps have slipped, so the sum of individual variances would overestimate the drift.
 
     Args:
         edges: Edges of the graph.

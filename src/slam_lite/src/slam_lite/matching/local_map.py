@@ -140,7 +140,7 @@ class LocalMap:
 
     @property
     def layers(self) -> Tuple[Layer, Layer]:
-        """This map and the coarse one, as tuples for numba kernels; an empty one if there is no coarse map."""
+        """This map and the coarse one, as tuples for numba kernels; without a coarse map, an empty one."""
         return _layer(self, self), _layer(self.coarse_map or _EMPTY, self)
 
     def to_grid(self, pose: Pose2) -> np.ndarray:
