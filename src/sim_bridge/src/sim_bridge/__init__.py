@@ -42,7 +42,11 @@ _deprecated = deprecated_names(__name__, {"Fitting": "RobotWrappers", "Observati
 
 
 def __getattr__(name: str) -> Any:
-    """Import a public name when it is first used: a robot's profile alone does not load the simulator."""
+    """Import a public name when it is first used: a robot's profile alone does not load the simulator.
+
+    Raises:
+        AttributeError: There is no such name.
+    """
     if name not in _MODULE_OF:
         return _deprecated(name)
     return getattr(import_module(f"{__name__}.{_MODULE_OF[name]}"), name)

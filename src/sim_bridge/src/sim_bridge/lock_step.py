@@ -55,12 +55,20 @@ class LockStepCoordinator:
         return min(self._latency, self.period)
 
     def add_member(self, name: str, period: float) -> None:
-        """Add a node, from the next tick on."""
+        """Add a node, from the next tick on.
+
+        Args:
+            name: Name of the node.
+            period: Longest time between two ticks that it accepts [simulated s].
+        """
         self._members[name] = _Member(period, self._number)
         self.members, self._members_changed = frozenset(self._members), True
 
     def remove_member(self, name: str) -> None:
-        """Remove a node, and what was counted of messages to it: the next node of its name starts at 0."""
+        """Remove a node and the message counts of the channels to it.
+
+        A node that joins later under the same name starts its counts at 0.
+        """
         self._members.pop(name, None)
         for member in self._members.values():
             member.sent = {

@@ -54,7 +54,12 @@ class Pacer:
         self._anchor_speed = -1.0
 
     def report(self, name: str, stamp: float) -> None:
-        """Record that a node has processed the simulation up to ``stamp`` [simulated s]."""
+        """Record how far a node has processed the simulation.
+
+        Args:
+            name: Name of the node; others than those of ``wait_for`` are ignored.
+            stamp: Simulated time up to which it has processed the data [s].
+        """
         if name not in self.wait_for:
             return
         gap = stamp - self._reported.get(name, stamp)
@@ -95,7 +100,7 @@ class Pacer:
         return self._speed_delay(stamp, wall) if is_limited else 0.0
 
     def lagging_nodes(self, stamp: float) -> List[str]:
-        """Return the nodes that a step to ``stamp`` has to wait for."""
+        """Return the nodes that a step to a simulated time [s] has to wait for."""
         return sorted(
             name
             for name, reported in self._reported.items()
@@ -108,7 +113,15 @@ class Pacer:
         return max(self._shortest_period, *self._gaps.get(name, (0.0,))) + self.odometry_delay
 
     def give_up(self, stamp: float, wall: float) -> List[str]:
-        """Mark nodes as missing that have been waited for too long, and return their names."""
+        """Mark the nodes as missing that have blocked the simulation for longer than ``patience``.
+
+        Args:
+            stamp: Simulated time after the step that is blocked [s].
+            wall: Wall clock [s].
+
+        Returns:
+            Names of the nodes given up by this call.
+        """
         if self._blocked_since is None or wall - self._blocked_since < self._patience:
             return []
         given_up = self.lagging_nodes(stamp)

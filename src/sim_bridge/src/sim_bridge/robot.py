@@ -29,8 +29,8 @@ class RobotWrappers:
     """Functions that wrap each sensor and the drive of a robot, e.g. to inject faults.
 
     Attributes:
-        sensor: Gets each sensor before it is mounted; returns it or another of the same contract.
-        drive: The same for the drive.
+        sensor: Takes a sensor before it is mounted; returns it, or a wrapper that meets the same contract.
+        drive: Takes the drive; returns it, or a wrapper that meets the same contract.
     """
 
     sensor: Callable[[Sensor[Any]], Sensor[Any]] = lambda sensor: sensor
@@ -140,7 +140,11 @@ class Robot:
         self.reset(mounting)
 
     def reset(self, mounting: Mounting) -> None:
-        """Reset drive, odometry and sensors for a new start."""
+        """Reset drive, odometry and sensors for a new start.
+
+        Args:
+            mounting: Start pose, settings and seed of the new start.
+        """
         self._set_rates(mounting.settings)
         drive, odometry = self.profile.drive, self.profile.odometry
         self._drive = self._wrappers.drive(RampedDrive(drive))
@@ -166,7 +170,11 @@ class Robot:
         self._count_steps()
 
     def command(self, twist: Twist2) -> None:
-        """Set the velocity command, which holds until the drive's time-out."""
+        """Set the velocity command.
+
+        Args:
+            twist: Speed [m/s] and turn rate [rad/s]; holds until the drive's time-out.
+        """
         self._drive.command(twist)
 
     def halt(self) -> None:
@@ -182,7 +190,11 @@ class Robot:
         self._odometer.reset()
 
     def retime(self, settings: SimulationSettings) -> None:
-        """Use the rates of other settings."""
+        """Change the physics rate or the rates of sensors.
+
+        Args:
+            settings: The new rates; the noise stays that of the last reset.
+        """
         self._set_rates(settings)
         self._next_step = 0
         for mount in self._mounts.values():
@@ -200,17 +212,31 @@ class Robot:
         self.steps_at_once = reduce(math.gcd, each, self._interval)
 
     def enable_sensor(self, name: str, is_enabled: bool = True) -> None:
-        """Enable or disable a sensor that measures only on demand."""
+        """Enable or disable a sensor that measures only on demand, such as a camera.
+
+        Args:
+            name: Key of the sensor in ``specs``.
+            is_enabled: Whether it measures from now on; a sensor that is not on demand is always enabled.
+        """
         self._mounts[name].enable(is_enabled)
 
     def begin_steps(self, step: int) -> None:
-        """Set the motors if due, before physics step number ``step``."""
+        """Set the motor targets, if due.
+
+        Args:
+            step: Number of the physics step that follows.
+        """
         if step % self._interval == 0:
             seconds = self._interval / self._settings.physics_rate
             self.vehicle.drive(*self._drive.wheel_speeds(seconds))
 
     def end_steps(self, step: int, stamp: float) -> None:
-        """Let the sensors that are due measure, after ``step`` physics steps, at the time ``stamp``."""
+        """Run the measurements of the sensors that are due.
+
+        Args:
+            step: Number of physics steps since the rates were set.
+            stamp: Simulated time [s].
+        """
         if step % self._interval == 0:
             self._context.record_contacts()
         if step < self._next_step:
@@ -219,7 +245,11 @@ class Robot:
         self._next_step = min([mount.end_step(step, self._context) for mount in self._mounts.values()])
 
     def observe(self, stamp: float) -> StepResult:
-        """Return what has been measured since the last call."""
+        """Return the readings since the last call, and the latest ground truth.
+
+        Args:
+            stamp: Simulated time of the result [s].
+        """
         self._context.clear_contacts()
         delivered = {name: mount.pop_reading() for name, mount in self._mounts.items()}
         readings = {name: reading for name, reading in delivered.items() if reading is not None}

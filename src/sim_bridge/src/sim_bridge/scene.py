@@ -156,13 +156,21 @@ class Scene:
         raise WorldError(f"the robot would start at {where}, inside {', '.join(resolved.links)}")
 
     def robot(self, name: str) -> Robot:
-        """Return a robot by name."""
+        """Return a robot by the name of its model."""
         if name not in self._robots:
             raise UnknownEntityError(f"no robot named {name!r}{hint(name, self._robots)}")
         return self._robots[name]
 
     def add(self, bodies: Sequence[Body], joints: Sequence[Joint] = ()) -> None:
-        """Add models and the joints between their bodies. Raises WorldError if a name is taken."""
+        """Add models.
+
+        Args:
+            bodies: The links of the models.
+            joints: Joints between these links, or to the world.
+
+        Raises:
+            WorldError: A name is taken.
+        """
         self.models.check_free(body.model for body in bodies)
         self._engine.add(bodies, joints)
         self.joints.add(joints)
@@ -178,19 +186,37 @@ class Scene:
         self._starts.pop(name, None)
 
     def set_model_state(self, name: str, state: KinematicState) -> None:
-        """Set the pose and velocity of a model with all its links; a robot discards its command."""
+        """Set the pose and velocity of a model with all its links; a robot discards its command.
+
+        Args:
+            name: Name of the model.
+            state: Pose and velocity of the model's frame in the world.
+        """
         self.models.set_state(name, state)
         if name in self._robots:
             self._robots[name].halt()
 
     def attach(self, first: str, second: str) -> None:
-        """Fix two links to each other in their present relative pose; they do not collide while attached."""
+        """Fix two links to each other in their present relative pose; they do not collide while attached.
+
+        Args:
+            first: Name of the holding link, ``model::link``, e.g. of a gripper.
+            second: Name of the held link.
+        """
         self.models.check_link(first)
         self.models.check_link(second)
         self._engine.attachments.attach(first, second)
 
     def detach(self, first: str, second: str) -> None:
-        """Undo ``attach``. Raises UnknownEntityError if the two are not attached in this order."""
+        """Undo ``attach``.
+
+        Args:
+            first: Name of the holding link.
+            second: Name of the held link.
+
+        Raises:
+            UnknownEntityError: The two are not attached in this order.
+        """
         if not self._engine.attachments.are_attached(first, second):
             raise UnknownEntityError(f"{second} is not attached to {first}")
         self._engine.attachments.detach(first, second)
@@ -200,7 +226,14 @@ class Scene:
         self._engine.set_gravity(gravity)
 
     def set_physics_rate(self, rate: int) -> None:
-        """Set the physics steps per second. Raises SettingsError if another rate does not divide it."""
+        """Set the physics steps per second.
+
+        Args:
+            rate: Steps per simulated second [Hz].
+
+        Raises:
+            SettingsError: Another rate does not divide it.
+        """
         settings = replace(self.settings, physics_rate=rate)
         self._stamp_at_rate, self._physics_steps = self.stamp, 0
         self.settings = settings

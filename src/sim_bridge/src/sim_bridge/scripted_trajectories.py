@@ -64,13 +64,24 @@ class ScriptedTrajectory:
 
 
 class TrajectoryPlayer:
-    """Moves the bodies of a scene along ``trajectories``, which may be replaced at any time."""
+    """Moves the bodies of a scene along their trajectories.
+
+    Attributes:
+        trajectories: The trajectories; may be replaced at any time.
+    """
 
     def __init__(self, trajectories: Tuple[ScriptedTrajectory, ...]):
         self.trajectories = trajectories
 
     def update(self, engine: KinematicBodies, step: int, rate: int, stamp: float) -> None:
-        """Move the bodies, if due, before physics step ``step``, of ``rate`` per second, at ``stamp`` [s]."""
+        """Move the bodies, if due.
+
+        Args:
+            engine: Holds the bodies.
+            step: Number of the next physics step.
+            rate: Physics steps per second.
+            stamp: Simulated time [s].
+        """
         if self.trajectories and step % max(rate // TRAJECTORY_RATE, 1) == 0:
             # Bodies may have been deleted.
             present = (each for each in self.trajectories if engine.has_link(each.link))

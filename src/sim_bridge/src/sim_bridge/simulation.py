@@ -117,14 +117,14 @@ def box_on_floor(
     mass: Optional[float] = None,
     height: float = 0.0,
 ) -> Body:
-    """Return the body of a box model.
+    """Return the body of a box model that stands at a height.
 
     Args:
         name: Name of the model.
         size: Lengths along x, y and z [m].
         pose: Pose of its centre in the world.
         mass: Mass [kg]; None for a static box.
-        height: Height of its bottom [m].
+        height: Height of its bottom above the world's origin [m].
 
     Raises:
         WorldError: The size or pose is not valid.

@@ -20,10 +20,10 @@ class Collision:
     """A solid part of a body (SDF <collision>).
 
     Attributes:
-        shape: The shape.
+        shape: The shape, in its own frame.
         pose_in_body: Pose (4, 4) of the shape in the body frame.
-        laser_retro: Intensity with which it reflects a laser.
-        name: Its name.
+        laser_retro: Intensity with which it reflects a laser (SDF <laser_retro>).
+        name: Name of the collision.
     """
 
     shape: Shape
@@ -64,7 +64,12 @@ class Inertia:
 
 @dataclass(frozen=True)
 class SurfaceProperties:
-    """Contact properties of a body (SDF <surface>): Coulomb ``friction`` and ``restitution``."""
+    """Contact properties of a body (SDF <surface>).
+
+    Attributes:
+        friction: Coefficient of Coulomb friction.
+        restitution: Coefficient of restitution: 0 is inelastic, 1 elastic.
+    """
 
     friction: float = 1.0
     restitution: float = 0.0
@@ -120,14 +125,14 @@ class Joint:
         kind: ``fixed``, ``revolute`` or ``prismatic``.
         parent: Name of the parent body; empty for the world.
         child: Name of the child body.
-        pose_in_child: Pose (4, 4) of the joint frame in the child's.
+        pose_in_child: Pose (4, 4) of the joint frame in the child's frame.
         axis: Unit vector (3,) in the joint frame.
         lower: Lower limit [rad or m].
         upper: Upper limit [rad or m].
         effort: Largest effort that may be applied [N m or N].
         damping: Viscous damping [N m s/rad or N s/m].
         friction: Static friction [N m or N].
-        start: Position at the start [rad or m].
+        start: Initial position [rad or m].
     """
 
     name: str
@@ -151,7 +156,14 @@ class Joint:
 
 @dataclass(frozen=True, eq=False)
 class DrivenModel:
-    """A model with a drive plugin, from whose SDF ``element`` a robot is made."""
+    """A model with a drive plugin, from which a robot is made (``read_sdf_robot``).
+
+    Attributes:
+        name: Name of the model.
+        element: Its SDF <model> element.
+        bodies: Its links.
+        joints: Joints between the links.
+    """
 
     name: str
     element: Any
@@ -161,12 +173,12 @@ class DrivenModel:
 
 @dataclass(frozen=True)
 class Light:
-    """A light.
+    """A light (SDF <light>).
 
     Attributes:
-        name: Its name.
+        name: Name of the light.
         diffuse: Red, green, blue, alpha, 0 to 1.
-        attenuation: Constant, linear and quadratic factors.
+        attenuation: Constant, linear [1/m] and quadratic [1/m^2] factors.
     """
 
     name: str

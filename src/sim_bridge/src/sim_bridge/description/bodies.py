@@ -13,9 +13,15 @@ SLIDING, ROLLING = SurfaceProperties(friction=0.0), SurfaceProperties(friction=1
 
 
 def bodies_of(model: RobotModel, name: str) -> Tuple[Tuple[Body, ...], Tuple[Joint, ...]]:
-    """Return the base and the wheels of a robot, in its base frame, and the joints between them.
+    """Return the rigid bodies of a robot, for the physics engine.
 
-    The mass of a wheel is at its hub.
+    Args:
+        model: Base and wheels.
+        name: Name of the robot's model, the prefix of the names of links and joints.
+
+    Returns:
+        The base and the wheels, with poses in the base frame, and the joints between them. The mass of a
+        wheel is at its hub.
     """
     base = model.base
     centre = np.eye(4)

@@ -28,7 +28,15 @@ def read_robot_file(path: Path, find_file: FindFile, arguments: Dict[str, str] =
 
 
 def read_description(path: Path, arguments: Dict[str, str] = {}) -> str:
-    """Return the URDF text of a URDF or xacro file. Raises RobotError naming the file."""
+    """Return the URDF text of a URDF or xacro file.
+
+    Args:
+        path: The file.
+        arguments: Arguments of the xacro, by name.
+
+    Raises:
+        RobotError: The file cannot be used; the text names it.
+    """
     if path.suffix == ".xacro":
         return _expanded(path, arguments)
     try:
@@ -49,9 +57,13 @@ def _expanded(path: Path, arguments: Dict[str, str]) -> str:
 
 
 def prefix_frames(name: str, urdf: str) -> str:
-    """Return a URDF whose link names, and so the frames, have the prefix ``name``/.
+    """Return a URDF whose link names, which are the frames of tf, have a prefix.
 
-    For robot_state_publisher, which in Debian 11 (1.15.1) does not support ``tf_prefix``.
+    For robot_state_publisher, which does not support ``tf_prefix`` in Debian 11 (1.15.1).
+
+    Args:
+        name: The prefix, without slash.
+        urdf: The URDF text.
     """
     robot = defusedxml.ElementTree.fromstring(urdf, forbid_dtd=False)
     for path, attribute in (("link", "name"), ("joint/parent", "link"), ("joint/child", "link")):

@@ -35,7 +35,16 @@ KOBUKI_IMU_VARIANCES = (1e6, 1e6, 0.05)
 
 @dataclass
 class PluginProfiles:
-    """Drive and sensors that the plugins of a robot define; ``namespace`` is that of the drive."""
+    """Drive and sensors that the plugins of a robot define.
+
+    Attributes:
+        drive: The drive; None as long as no plugin of a drive has been read.
+        odometry: The odometry, which the drive's plugin publishes.
+        sensors: Specifications of the sensors.
+        joint_states: Published joints, if any.
+        namespace: Namespace of the drive's plugin.
+        warnings: A sentence for each kind of content that is ignored.
+    """
 
     drive: Optional[DriveProfile] = None
     odometry: OdometryProfile = OdometryProfile()
@@ -46,9 +55,16 @@ class PluginProfiles:
 
 
 def read_plugins(structure: RobotStructure, elements: GazeboElements) -> PluginProfiles:
-    """Read all plugins: drives first, since they define the namespace.
+    """Read all plugins of a robot: drives first, since they define the namespace.
 
-    A robot without a laser gets a scan from its depth camera. Raises WorldError naming the element.
+    A robot without a laser gets a scan from its depth camera (depthimage_to_laserscan).
+
+    Args:
+        structure: The link tree.
+        elements: The <plugin> and <sensor> elements.
+
+    Raises:
+        WorldError: A value is not valid; the text names the element.
     """
     profiles = PluginProfiles()
     unsupported, failed_drives = [], []

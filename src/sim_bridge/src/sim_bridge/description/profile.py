@@ -15,7 +15,13 @@ Spec = TypeVar("Spec")
 
 @dataclass(frozen=True)
 class JointStateProfile:
-    """Joints whose states are published, on ``topic``, at ``rate`` [Hz]; None for the simulation's rate."""
+    """Joints whose states are published (sensor_msgs/JointState).
+
+    Attributes:
+        joints: Names of the joints.
+        rate: Rate of the messages [Hz]; None for that of the simulation.
+        topic: Topic of the messages.
+    """
 
     joints: Tuple[str, ...]
     rate: Optional[float] = None
@@ -24,14 +30,14 @@ class JointStateProfile:
 
 @dataclass(frozen=True, eq=False)
 class RobotProfile:
-    """A robot.
+    """A robot: its rigid parts, drive, odometry and sensors.
 
     Attributes:
         name: Name in its description.
         text: The URDF or SDF text that it was read from.
-        model: Its rigid parts.
-        drive: Its drive.
-        odometry: Its odometry.
+        model: Base and driven wheels.
+        drive: Wheels, command topics and limits.
+        odometry: Source, topic and frames of its odometry.
         sensors: Specifications of its sensors.
         joint_states: Published joints, if any.
         namespace: Namespace of its topics, as its description requests.
@@ -53,7 +59,7 @@ class RobotProfile:
         return self.text
 
     def sensors_of(self, kind: Type[Spec]) -> Tuple[Spec, ...]:
-        """Return the sensor specifications of a class."""
+        """Return the sensor specifications of a class, such as LaserProfile."""
         return tuple(sensor for sensor in self.sensors if isinstance(sensor, kind))
 
     @cached_property
@@ -63,7 +69,11 @@ class RobotProfile:
 
     @property
     def laser(self) -> LaserProfile:
-        """Specification of the first range finder."""
+        """Specification of the first range finder.
+
+        Raises:
+            IndexError: The robot has no range finder.
+        """
         return self.sensors_of(LaserProfile)[0]
 
     @property

@@ -20,7 +20,7 @@ def read_urdf_robot(text: str, where: str, find_file: FindFile = no_file) -> Rob
 
     Args:
         text: The URDF.
-        where: Names the text in errors.
+        where: Name of the text in errors, e.g. its file.
         find_file: Finds the files of package:// and model:// URIs.
 
     Raises:
@@ -32,7 +32,17 @@ def read_urdf_robot(text: str, where: str, find_file: FindFile = no_file) -> Rob
 
 
 def read_sdf_robot(model: DrivenModel) -> Tuple[RobotProfile, np.ndarray]:
-    """Return the robot of a model in a world, and its base's pose (4, 4). Raises RobotError."""
+    """Read a robot from a driven model of a world.
+
+    Args:
+        model: The model.
+
+    Returns:
+        The robot, and the pose (4, 4) of its base in the world.
+
+    Raises:
+        RobotError: The description cannot be used.
+    """
     structure, elements, base_in_world = read_sdf(model)
     text = ElementTree.tostring(model.element.xml, encoding="unicode")
     return _profile(structure, elements, [], text, model.element.file), base_in_world

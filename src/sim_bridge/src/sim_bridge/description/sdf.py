@@ -11,9 +11,16 @@ from sim_bridge.world import Body, DrivenModel
 
 
 def read_sdf(model: DrivenModel) -> Tuple[RobotStructure, GazeboElements, np.ndarray]:
-    """Return a robot's structure, its Gazebo elements, and the pose (4, 4) of its root link in the world.
+    """Read the structure of a robot from a driven SDF model.
 
-    Raises RobotError.
+    Args:
+        model: The model.
+
+    Returns:
+        The link tree, the <plugin> and <sensor> elements, and the pose (4, 4) of the root link in the world.
+
+    Raises:
+        RobotError: The links and joints are not one tree.
     """
     elements = GazeboElements()
     elements.add(model.element, "")

@@ -17,7 +17,7 @@ class RobotLink:
     """A link of a description.
 
     Attributes:
-        name: Its name.
+        name: Name of the link.
         mass: Mass [kg]; 0 if none is given.
         centre: Centre of mass (3,) in the link frame [m].
         inertia: Inertia matrix (3, 3) about the centre, along the axes of the link frame [kg m^2].
@@ -36,7 +36,7 @@ class RobotJoint:
     """A joint of a description.
 
     Attributes:
-        name: Its name.
+        name: Name of the joint.
         parent: Name of the parent link.
         child: Name of the child link.
         child_in_parent: Pose (4, 4) of the child in the parent at position 0.
@@ -57,8 +57,8 @@ class RigidPart:
     Attributes:
         name: Name of the first link, whose frame is the part's.
         mass: Mass [kg].
-        centre_of_mass: Centre of mass (3,) [m].
-        inertia: Moments of inertia (3,) about it, along the axes of the part's frame [kg m^2].
+        centre_of_mass: Centre of mass (3,) in the part's frame [m].
+        inertia: Moments of inertia (3,) about the centre of mass, along the part's axes [kg m^2].
         collisions: Solid parts.
     """
 
@@ -71,7 +71,13 @@ class RigidPart:
 
 @dataclass(frozen=True, eq=False)
 class Wheel:
-    """A part that rotates about ``axis`` (3,), with its frame at ``origin_in_base`` (4, 4)."""
+    """A part that rotates about an axis.
+
+    Attributes:
+        part: The links of the wheel.
+        origin_in_base: Pose (4, 4) of the part's frame in the base frame.
+        axis: Unit vector (3,) of the axis in the part's frame.
+    """
 
     part: RigidPart
     origin_in_base: np.ndarray
@@ -80,7 +86,12 @@ class Wheel:
 
 @dataclass(frozen=True, eq=False)
 class RobotModel:
-    """The base of a robot, and its driven wheels by joint name."""
+    """The rigid parts of a robot.
+
+    Attributes:
+        base: The base, with all links that are not on a driven wheel.
+        wheels: Driven wheels by joint name.
+    """
 
     base: RigidPart
     wheels: Dict[str, Wheel]
@@ -109,8 +120,13 @@ class RobotStructure:
 
     Args:
         name: Name of the robot, for errors.
-        links: Its links.
-        joints: Its joints.
+        links: The links.
+        joints: The joints.
+
+    Attributes:
+        links: The links by name.
+        joints: The joints by name.
+        root: Name of the root link, whose frame is the base frame.
 
     Raises:
         RobotError: The links and joints are not one tree.
@@ -145,7 +161,11 @@ class RobotStructure:
             reached.update(chain)
 
     def pose_in_base(self, link: str) -> np.ndarray:
-        """Return a link's pose (4, 4) in the root frame with all joints at 0. Raises RobotError."""
+        """Return the pose (4, 4) of a link in the base frame with all joints at 0.
+
+        Raises:
+            RobotError: There is no such link.
+        """
         if link not in self.links:
             raise RobotError(f"robot {self.name}: no link named {link!r}")
         in_base = IDENTITY
@@ -156,9 +176,13 @@ class RobotStructure:
         return in_base
 
     def assemble(self, driven: Iterable[str]) -> RobotModel:
-        """Return the base and the wheels on the joints ``driven``; all other joints are treated as fixed.
+        """Return the rigid parts of the robot.
 
-        Raises RobotError if one of the joints does not exist.
+        Args:
+            driven: Joints of the driven wheels; all other joints are treated as fixed.
+
+        Raises:
+            RobotError: One of the joints does not exist, or a part has no mass.
         """
         wheel_joints = [self._joint(name) for name in driven]
         wheels = {
@@ -209,12 +233,22 @@ class RobotStructure:
 
 @dataclass
 class GazeboElements:
-    """<plugin> elements of a model, and <sensor> elements with the names of their links."""
+    """Elements of a description that Gazebo reads.
+
+    Attributes:
+        plugins: <plugin> elements of the model.
+        sensors: <sensor> elements, each with the name of its link.
+    """
 
     plugins: List[Element] = field(default_factory=list)
     sensors: List[Tuple[str, Element]] = field(default_factory=list)
 
     def add(self, parent: Element, link: str) -> None:
-        """Add the direct children of an element: <gazebo> in URDF, <model> or <link> in SDF."""
+        """Add the <plugin> and <sensor> children of an element.
+
+        Args:
+            parent: <gazebo> in URDF, <model> or <link> in SDF.
+            link: Name of the link that the sensors are fixed to.
+        """
         self.plugins.extend(parent.children("plugin"))
         self.sensors.extend((link, sensor) for sensor in parent.children("sensor"))

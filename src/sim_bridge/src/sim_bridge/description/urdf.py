@@ -24,7 +24,7 @@ def read_urdf(text: str, where: str, find_file: FindFile) -> Tuple[RobotStructur
 
     Args:
         text: The URDF.
-        where: Names the text in errors.
+        where: Name of the text in errors, e.g. its file.
         find_file: Finds the files of package:// and model:// URIs.
 
     Returns:

@@ -14,7 +14,11 @@ class WheelDrive(Protocol):
     """Contract of a drive and of its wrappers: turns velocity commands into wheel speeds."""
 
     def command(self, twist: Twist2) -> None:
-        """Set the velocity command; one that is not finite stops the robot."""
+        """Set the velocity command.
+
+        Args:
+            twist: Speed [m/s] and turn rate [rad/s]; one that is not finite stops the robot.
+        """
 
     def switch(self, on: bool) -> None:
         """Switch motor power; without it the motors brake and commands are ignored."""
@@ -70,7 +74,11 @@ class DriveProfile:
 
 
 class RampedDrive:
-    """The controller of a base: limits speed and acceleration and stops after the command time-out."""
+    """The controller of a base: limits speed and acceleration and stops after the command time-out.
+
+    Args:
+        profile: Geometry and limits.
+    """
 
     def __init__(self, profile: DriveProfile):
         self._profile = profile

@@ -14,7 +14,14 @@ INPUT_TIMEOUT = 0.5
 
 @dataclass(frozen=True)
 class MuxInput:
-    """An input of the multiplexer: its name, topic, time-out [s] and priority (the highest wins)."""
+    """An input of the multiplexer (an entry of ``subscribers`` of yocs_cmd_vel_mux).
+
+    Attributes:
+        name: Name of the input.
+        topic: Topic of its commands.
+        timeout: Time without a command after which the input is inactive [s].
+        priority: The active input with the highest value wins.
+    """
 
     name: str
     topic: str
@@ -32,12 +39,24 @@ TURTLEBOT_INPUTS: Tuple[MuxInput, ...] = (
 
 
 def read_inputs(path) -> Tuple[MuxInput, ...]:
-    """Read a file in the format of yocs_cmd_vel_mux. Raises SettingsError naming file and line."""
+    """Read the inputs of a file in the format of yocs_cmd_vel_mux.
+
+    Raises:
+        SettingsError: The file cannot be used; the text names file and line.
+    """
     return _inputs_of(read_table(path), str(path))
 
 
 def parse_inputs(text: str, source: str) -> Tuple[MuxInput, ...]:
-    """Read the same from a text; ``source`` names it in errors."""
+    """Read the inputs of a text in the format of yocs_cmd_vel_mux.
+
+    Args:
+        text: The YAML text.
+        source: Name of the text in errors.
+
+    Raises:
+        SettingsError: The text cannot be used; the error names source and line.
+    """
     return _inputs_of(parse_table(text, source), source)
 
 
@@ -54,24 +73,28 @@ def _inputs_of(table: Table, source: str) -> Tuple[MuxInput, ...]:
 
 
 class VelocityMux:
-    """Forwards the commands of the input with the highest priority that has not timed out."""
+    """Forwards the commands of the input with the highest priority that has not timed out (yocs_cmd_vel_mux).
+
+    Args:
+        inputs: The inputs, in any order.
+    """
 
     def __init__(self, inputs: Sequence[MuxInput]):
         self.inputs = tuple(sorted(inputs, key=lambda one: -one.priority))
         self._last_received: Dict[str, float] = {}
 
     def choose(self, now: float, arrived: Mapping[str, Twist2]) -> Optional[Twist2]:
-        """Return the command to forward, None if there is none.
+        """Return the command to forward; None if there is none.
 
         Args:
-            now: Time [s].
+            now: Simulated time [s].
             arrived: Newest command of each input, by name, since the last call.
         """
         self._last_received.update(dict.fromkeys(arrived, now))
         return arrived.get(self.active(now))
 
     def active(self, now: float) -> str:
-        """Return the name of the active input, or ``idle``."""
+        """Return the name of the active input at a simulated time [s], or ``idle``."""
         for one in self.inputs:
             received = self._last_received.get(one.name)
             if received is not None and 0.0 <= now - received < one.timeout:
@@ -101,7 +124,10 @@ class VelocityLimits:
 class VelocitySmoother:
     """Limits speed and acceleration of commands, and brakes after the last one (yocs_velocity_smoother).
 
-    It is updated at every step of time, so that no velocity jumps after a pause between two commands.
+    Update it at every step of time, so that the velocity does not jump after a pause between two commands.
+
+    Args:
+        limits: Limits of speed and acceleration.
     """
 
     def __init__(self, limits: VelocityLimits = VelocityLimits()):
@@ -111,13 +137,21 @@ class VelocitySmoother:
         self._received_at = self._now = math.inf
 
     def set_target(self, command: Twist2, now: float) -> None:
-        """Set the velocity to reach; ``now``: time of its arrival [s]."""
+        """Set the velocity to reach.
+
+        Args:
+            command: The received command.
+            now: Simulated time of its arrival [s].
+        """
         self._target, self._received_at = command, now
 
     def command(self, now: float) -> Optional[Twist2]:
-        """Return the smoothed command at the time ``now`` [s], None after the robot has stopped.
+        """Return the smoothed command; None after the robot has stopped.
 
-        A target that is not finite is passed on as it is.
+        A target that is not finite is passed on unchanged.
+
+        Args:
+            now: Simulated time [s].
         """
         seconds, self._now = now - self._now, now
         if self._target is None:

@@ -15,7 +15,10 @@ CONTRACT = PluginContract("fault", FaultKind, None, "sim_bridge.faults")
 
 
 def load_custom_kind(name: str) -> Optional[Type[FaultKind]]:
-    """Load the kind of a dotted name or of an entry point.
+    """Load a user-defined kind of fault.
+
+    Args:
+        name: Dotted name (``my_package.my_module/MyFault``) or entry point.
 
     Returns:
         The class; None if there is none of that name.
@@ -41,7 +44,20 @@ def load_custom_kind(name: str) -> Optional[Type[FaultKind]]:
 
 
 class GuardedFault(FaultKind):
-    """Calls a user-defined fault of the class ``guarded``; its failures become a FaultError with its name."""
+    """Calls a user-defined fault and checks what it returns; its failures become a FaultError.
+
+    Args:
+        name: Name of the kind, for errors.
+        kind: Class of the fault.
+        strength: In the unit of the kind.
+        rng: Random generator of the fault.
+
+    Attributes:
+        guarded: Class of the fault.
+
+    Raises:
+        FaultError: The fault cannot be instantiated; its methods raise it as well.
+    """
 
     def __init__(self, name: str, kind: Type[FaultKind], strength: float, rng: np.random.Generator):
         self._name, self.guarded = name, kind

@@ -26,7 +26,15 @@ def load_faults(path: Path, unsupported: Check = lambda _: None) -> Tuple[Fault,
 
 
 def faults_from(table: Table, unsupported: Check = lambda _: None) -> Tuple[Fault, ...]:
-    """Read the faults of a YAML table; see ``load_faults``."""
+    """Read the faults of a YAML table.
+
+    Args:
+        table: Table with a list ``faults``; other keys are ignored.
+        unsupported: Returns why a kind cannot be used here; None if it can.
+
+    Raises:
+        SettingsError: With file, line and key.
+    """
     return tuple(_fault(entry, unsupported) for entry in table.tables("faults"))
 
 

@@ -45,7 +45,7 @@ class TurnedRound(FaultKind):
 
 
 class ObstacleAhead(FaultKind):
-    """Puts a box at a distance ahead of the robot.
+    """Base class of faults that put a box ahead of the robot, at a distance of ``strength``.
 
     Attributes:
         name: Name of the model; if it is taken, a number is appended.

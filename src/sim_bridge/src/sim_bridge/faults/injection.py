@@ -35,7 +35,11 @@ class FaultInjector:
             self.add(fault)
 
     def add(self, fault: Fault) -> None:
-        """Add a fault. Raises SettingsError if there is no such kind."""
+        """Add a fault.
+
+        Raises:
+            SettingsError: There is no such kind.
+        """
         rng = np.random.default_rng([self._seed, _STREAM, fault.seed, len(self._faults)])
         self._faults.append((fault, make_fault(fault.kind, fault.strength, rng)))
 
@@ -53,7 +57,12 @@ class FaultInjector:
         return [kind for fault, kind in self._faults if fault.start <= now < fault.end]
 
     def update(self, now: float, context: FaultContext) -> None:
-        """Begin and end faults of the environment that are due at a simulated time [s]."""
+        """Begin and end the faults of the environment that are due.
+
+        Args:
+            now: Simulated time [s].
+            context: What the faults may change, with the present pose of the robot.
+        """
         active = self.active(now)
         for kind in active:
             if kind not in self._begun:

@@ -24,8 +24,8 @@ class Fault:
 
     Attributes:
         kind: Name of the kind.
-        start: When it becomes active [simulated s].
-        end: When it ends [simulated s].
+        start: Time at which it becomes active [simulated s].
+        end: Time at which it ends [simulated s].
         strength: In the unit of its kind.
         seed: Seed of its random numbers.
     """
@@ -39,12 +39,12 @@ class Fault:
 
 @dataclass(frozen=True, eq=False)
 class FaultContext:
-    """What a fault of the environment may change.
+    """The part of the simulation that a fault of the environment may change.
 
     Attributes:
         scene: The simulated world.
-        robot: Name of the robot in it.
-        base_in_world: True pose of the robot.
+        robot: Name of the robot's model.
+        base_in_world: True pose of the robot's base.
     """
 
     scene: Scene
@@ -56,6 +56,10 @@ class FaultKind:
     """Base class of faults; a subclass overrides the methods for what it changes.
 
     The first line of the subclass's docstring states the effect; tables and the cockpit show it.
+
+    Args:
+        strength: Strength of the fault, in ``unit``; an instance finds it in ``self._strength``.
+        rng: Random generator of the fault; an instance finds it in ``self._rng``.
 
     Attributes:
         strength: Default, least and largest strength.
@@ -71,23 +75,60 @@ class FaultKind:
         self._strength, self._rng = strength, rng
 
     def scan(self, scan: Scan) -> Optional[Scan]:
-        """Return the scan that the laser publishes instead; None for none."""
+        """Change a scan before it is published.
+
+        Args:
+            scan: What the laser has measured; must not be changed in place.
+
+        Returns:
+            The scan to publish instead; None for none.
+        """
         return scan
 
     def odometry(self, odometry: Odometry) -> Optional[Odometry]:
-        """Return the odometry that is published instead; None for none."""
+        """Change an odometry estimate before it is published.
+
+        Args:
+            odometry: Pose in the odometry frame and velocity in the base frame.
+
+        Returns:
+            The estimate to publish instead; None for none.
+        """
         return odometry
 
     def command(self, twist: Twist2) -> Optional[Twist2]:
-        """Return the velocity command that the drive receives instead; None for none."""
+        """Change a velocity command before the drive receives it.
+
+        Args:
+            twist: The command: speed [m/s] and turn rate [rad/s].
+
+        Returns:
+            The command that the drive receives instead; None for none.
+        """
         return twist
 
     def wheel_speeds(self, left: float, right: float) -> Tuple[float, float]:
-        """Return the speeds at which the wheels turn instead [rad/s]."""
+        """Change the speeds that the drive sets.
+
+        Args:
+            left: Target speed of the left wheels [rad/s].
+            right: Target speed of the right wheels [rad/s].
+
+        Returns:
+            Speeds at which the left and the right wheels turn instead [rad/s].
+        """
         return left, right
 
     def begin(self, context: FaultContext) -> None:
-        """Change the environment when the fault starts."""
+        """Change the environment when the fault starts.
+
+        Args:
+            context: The scene, and the robot with its true pose.
+        """
 
     def end(self, context: FaultContext) -> None:
-        """Undo the change when the fault ends."""
+        """Undo the change when the fault ends.
+
+        Args:
+            context: The scene, and the robot with its true pose.
+        """

@@ -46,7 +46,11 @@ class DistortedOdometry(FaultKind):
         return Odometry(self._output, odometry.twist)
 
     def step(self, step: Pose2) -> Pose2:
-        """Return what odometry measures of a motion of one period, in the base frame before it."""
+        """Return the motion that odometry measures in one period.
+
+        Args:
+            step: Measured motion without the fault, in the base frame at the beginning of the period.
+        """
         return step
 
 

@@ -43,7 +43,10 @@ KINDS: Dict[str, Type[FaultKind]] = {
 
 
 def kind_named(name: str) -> Type[FaultKind]:
-    """Return a kind of the registry, or a user-defined one by its dotted name, my_package.my_module/MyFault.
+    """Return a kind of fault.
+
+    Args:
+        name: Key of KINDS, or the dotted name of a user-defined kind (``my_package.my_module/MyFault``).
 
     Raises:
         SettingsError: There is no such kind, or it does not meet the contract.
@@ -55,17 +58,42 @@ def kind_named(name: str) -> Type[FaultKind]:
 
 
 def make_fault(name: str, strength: float, rng: np.random.Generator) -> FaultKind:
-    """Instantiate a kind; a user-defined one is guarded. Raises SettingsError."""
+    """Instantiate a kind; a user-defined one is wrapped in a GuardedFault.
+
+    Args:
+        name: Name of the kind.
+        strength: In the unit of the kind.
+        rng: Random generator of the fault.
+
+    Raises:
+        SettingsError: There is no such kind.
+        FaultError: A user-defined kind cannot be instantiated.
+    """
     kind = kind_named(name)
     return kind(strength, rng) if name in KINDS else GuardedFault(name, kind, strength, rng)
 
 
 def default_strength(kind: str) -> float:
-    """Return the strength of a fault that states none. Raises SettingsError."""
+    """Return the strength of a fault whose file gives none.
+
+    Raises:
+        SettingsError: There is no such kind.
+    """
     return kind_named(kind).strength[0]
 
 
 def strength_error(kind: str, strength: float) -> Optional[str]:
-    """Return what a strength of the kind must be, as "from -5 to 5"; None if it is. Raises SettingsError."""
+    """Check a strength.
+
+    Args:
+        kind: Name of the kind.
+        strength: In the unit of the kind.
+
+    Returns:
+        The valid interval as a text, such as "from -5 to 5"; None if the strength is in it.
+
+    Raises:
+        SettingsError: There is no such kind.
+    """
     _, least, largest = kind_named(kind).strength
     return None if least <= strength <= largest else f"from {least:g} to {largest:g}"

@@ -15,7 +15,11 @@ JUMP_BACK_SECONDS = 1.0
 
 
 def unsupported_by_relay(name: str) -> Optional[str]:
-    """Return why a kind cannot be relayed; None if it can. Raises SettingsError if there is no such kind."""
+    """Return why a kind of fault cannot be relayed; None if it can.
+
+    Raises:
+        SettingsError: There is no such kind.
+    """
     if any(_overrides(kind_named(name), method) for method in MESSAGE_METHODS):
         return None
     return f"{name} changes no scan, odometry or command, only wheels or the home, which no relay can reach"
@@ -28,7 +32,7 @@ class RelayedFaults:
     that were added meanwhile are removed.
 
     Args:
-        faults: Faults known from the start.
+        faults: Faults of the whole run.
         seed: Seed of their random numbers.
     """
 
@@ -39,11 +43,25 @@ class RelayedFaults:
         self._latest = 0.0
 
     def begin(self, time: float) -> None:
-        """Set the first time of the clock [s]; before, the time since the start is 0."""
+        """Start to count the time of faults.
+
+        Args:
+            time: First time of the external clock [s]; before this call, 0 s have passed.
+        """
         self._start = self._latest = time
 
     def add(self, kind: str, seconds: float, strength: float, time: float) -> None:
-        """Add a fault that lasts from ``time`` for ``seconds``. Raises SettingsError."""
+        """Add a fault that starts now.
+
+        Args:
+            kind: Name of the kind.
+            seconds: Duration [s].
+            strength: In the unit of the kind.
+            time: Time of the external clock [s].
+
+        Raises:
+            SettingsError: There is no such kind, or it changes no message.
+        """
         reason = unsupported_by_relay(kind)
         if reason is not None:
             raise SettingsError(reason)
@@ -51,7 +69,12 @@ class RelayedFaults:
         self._injector.add(Fault(kind, now, now + seconds, strength))
 
     def active(self, time: float, method: str) -> List[FaultKind]:
-        """Return the faults that are active at a time of the clock [s] and override the method."""
+        """Return the active faults that change one type of message, in the order of adding.
+
+        Args:
+            time: Time of the external clock [s].
+            method: ``scan``, ``odometry`` or ``command``.
+        """
         active = self._injector.active(self._since_start(time))
         return [kind for kind in active if _overrides(_class_of(kind), method)]
 

@@ -36,10 +36,10 @@ def load_mesh(file: MeshFile, cache: Optional[Path] = None) -> Mesh:
         cache: Folder of converted meshes, by default ``cache_folder()``.
 
     Returns:
-        The triangles, in metres.
+        The triangles, scaled, in metres.
 
     Raises:
-        WorldError: The file cannot be read or holds no triangles.
+        WorldError: The file cannot be read or contains no triangles.
     """
     try:
         content = read_bytes(file.path)

@@ -11,7 +11,19 @@ IDENTITY = np.eye(4)
 
 
 def pose3(x=0.0, y=0.0, z=0.0, roll=0.0, pitch=0.0, yaw=0.0) -> np.ndarray:
-    """Return the pose (4, 4) of SDF's and URDF's x, y, z, roll, pitch, yaw (fixed axes) [m, rad]."""
+    """Return the pose of SDF's and URDF's six values; rotations are about fixed axes.
+
+    Args:
+        x: Position [m].
+        y: Position [m].
+        z: Position [m].
+        roll: Rotation about x, applied first [rad].
+        pitch: Rotation about y [rad].
+        yaw: Rotation about z, applied last [rad].
+
+    Returns:
+        The homogeneous matrix (4, 4).
+    """
     (cr, sr), (cp, sp), (cy, sy) = ((math.cos(a), math.sin(a)) for a in (roll, pitch, yaw))
     return np.array(
         [
@@ -34,7 +46,10 @@ def to_pose2(pose: np.ndarray) -> Pose2:
 
 
 def quaternion(pose: np.ndarray) -> Tuple[float, float, float, float]:
-    """Return the orientation as a quaternion (x, y, z, w) (Shepperd, 1978); plain floats are faster here."""
+    """Return the orientation of a pose (4, 4) as a unit quaternion (x, y, z, w) (Shepperd, 1978).
+
+    Plain floats are faster here than numpy.
+    """
     (xx, xy, xz, _), (yx, yy, yz, _), (zx, zy, zz, _), _ = pose.tolist()
     most = max(xx + yy + zz, xx, yy, zz)
     if most == xx + yy + zz:
@@ -50,7 +65,7 @@ def quaternion(pose: np.ndarray) -> Tuple[float, float, float, float]:
 
 
 def from_quaternion(q: Sequence[float]) -> np.ndarray:
-    """Return the pose (4, 4) of a quaternion (x, y, z, w) of any length but zero."""
+    """Return the pose (4, 4), at the origin, of a quaternion (x, y, z, w) of any length but zero."""
     x, y, z, w = np.asarray(q, dtype=float) / np.linalg.norm(q)
     pose = np.eye(4)
     pose[:3, :3] = [
@@ -62,7 +77,7 @@ def from_quaternion(q: Sequence[float]) -> np.ndarray:
 
 
 def inverse(pose: np.ndarray) -> np.ndarray:
-    """Return the inverse of a rigid pose; numpy's general inverse would start BLAS threads."""
+    """Return the inverse (4, 4) of a rigid pose; numpy's general inverse would start BLAS threads."""
     inverted = np.eye(4)
     inverted[:3, :3] = pose[:3, :3].T
     inverted[:3, 3] = -(pose[:3, :3].T @ pose[:3, 3])
@@ -70,7 +85,15 @@ def inverse(pose: np.ndarray) -> np.ndarray:
 
 
 def transform_points(pose: np.ndarray, points_xyz: np.ndarray) -> np.ndarray:
-    """Transform points (N, 3) from the pose's frame into its parent's."""
+    """Transform points from a frame into its parent frame.
+
+    Args:
+        pose: Pose (4, 4) of the frame in its parent.
+        points_xyz: Points (N, 3) in the frame.
+
+    Returns:
+        The points (N, 3) in the parent frame.
+    """
     return points_xyz @ pose[:3, :3].T + pose[:3, 3]
 
 
@@ -81,5 +104,5 @@ def cross(a: Iterable[float], b: Iterable[float]) -> np.ndarray:
 
 
 def position(pose: np.ndarray) -> Sequence[float]:
-    """Return the position of a pose as a list."""
+    """Return x, y and z of a pose (4, 4) as a list."""
     return pose[:3, 3].tolist()

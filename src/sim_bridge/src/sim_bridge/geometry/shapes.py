@@ -9,14 +9,23 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Box:
-    """A box with lengths ``size`` along x, y and z [m]."""
+    """A box.
+
+    Attributes:
+        size: Lengths along x, y and z [m].
+    """
 
     size: Tuple[float, float, float]
 
 
 @dataclass(frozen=True)
 class Cylinder:
-    """A cylinder along z; ``radius`` and ``length`` [m]."""
+    """A cylinder along z.
+
+    Attributes:
+        radius: Radius [m].
+        length: Length along z [m].
+    """
 
     radius: float
     length: float
@@ -24,14 +33,22 @@ class Cylinder:
 
 @dataclass(frozen=True)
 class Sphere:
-    """A sphere; ``radius`` [m]."""
+    """A sphere.
+
+    Attributes:
+        radius: Radius [m].
+    """
 
     radius: float
 
 
 @dataclass(frozen=True)
 class Plane:
-    """The half-space below an infinite plane through the origin."""
+    """The half-space below an infinite plane through the origin.
+
+    Attributes:
+        normal: Unit vector out of the half-space.
+    """
 
     normal: Tuple[float, float, float] = (0.0, 0.0, 1.0)
 
@@ -73,7 +90,12 @@ VisualShape = Union[Shape, MeshFile]
 
 
 def scaled(shape: VisualShape, scale: Tuple[float, float, float]) -> VisualShape:
-    """Return a shape scaled along its axes; as in Gazebo, cylinders and spheres stay round."""
+    """Return a scaled shape; as in Gazebo, cylinders and spheres stay round.
+
+    Args:
+        shape: The shape.
+        scale: Scale factors along its x, y and z axes.
+    """
     x, y, z = scale
     if isinstance(shape, Box):
         return Box((shape.size[0] * x, shape.size[1] * y, shape.size[2] * z))

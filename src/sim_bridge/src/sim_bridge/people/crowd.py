@@ -33,8 +33,8 @@ class Crowd:
         world: The world they walk in.
 
     Attributes:
-        links: Names of their links.
-        bodies: Their bodies.
+        links: Names of their links, ``model::link``.
+        bodies: Their bodies, for the physics engine.
         rows: Their states (N, 5): x, y [m], velocity along x and y [m/s], radius [m].
 
     Raises:
@@ -128,16 +128,27 @@ class Crowd:
 
 
 def rows_of(robots: Iterable[Robot]) -> np.ndarray:
-    """Return the states (M, 5) of robots, as ``Crowd.rows``."""
+    """Return the states of robots.
+
+    Returns:
+        Rows (M, 5): x, y [m], velocity along x and y [m/s], radius [m], as ``Crowd.rows``.
+    """
     states = [robot.vehicle.state() for robot in robots]
     rows = [(*state.pose[:2, 3], *state.linear[:2], ROBOT_RADIUS) for state in states]
     return np.array(rows, dtype=float).reshape(-1, 5)
 
 
 def social_work(robot: np.ndarray, people: np.ndarray) -> float:
-    """Return the social work of a robot (5,) among pedestrians (N, 5).
+    """Return the social work of a robot among pedestrians.
 
-    It is the sum of the magnitudes of the social forces on the robot, and by it on each pedestrian [m/s^2].
+    It is the sum of the magnitudes of the social forces on the robot, and by it on each pedestrian.
+
+    Args:
+        robot: State (5,) of the robot, as a row of ``Crowd.rows``.
+        people: States (N, 5) of the pedestrians.
+
+    Returns:
+        The social work [m/s^2].
     """
     on_robot = np.linalg.norm(social_forces(robot, people).sum(axis=0))
     on_people = sum(float(np.linalg.norm(social_forces(each, robot[None, :]))) for each in people)

@@ -57,7 +57,15 @@ def advance(
 
 
 def social_forces(own: np.ndarray, others: np.ndarray) -> np.ndarray:
-    """Return the social forces (N, 2) of other agents (N, 5) on one agent (5,) [m/s^2]."""
+    """Return the social forces of other agents on one agent.
+
+    Args:
+        own: State (5,) of the agent.
+        others: States (N, 5) of the others.
+
+    Returns:
+        A force (N, 2) for each of the others [m/s^2].
+    """
     return np.array([_social_force(own, other) for other in others]).reshape(-1, 2)
 
 

@@ -18,7 +18,7 @@ class WalkableArea:
 
     Args:
         world: The world.
-        inside: The point.
+        inside: A point in free space; its yaw is ignored.
 
     Attributes:
         origin_xy: Corner of the grid (2,) in the world [m].
@@ -34,7 +34,13 @@ class WalkableArea:
         self._world, self._grid = world.name, grid
 
     def distances_to(self, goals_xy: np.ndarray) -> np.ndarray:
-        """Return the path length (N, rows, cols) from each cell to each of the goals (N, 2) [m].
+        """Return the path lengths to goals.
+
+        Args:
+            goals_xy: Goals (N, 2) in the world [m].
+
+        Returns:
+            Path length (N, rows, cols) from each cell to each goal [m].
 
         Raises:
             WorldError: A goal is not in the area.
@@ -46,7 +52,13 @@ class WalkableArea:
         return distances.reshape(-1, *self.walls.shape)
 
     def remaining_distance(self, distances: np.ndarray, x: float, y: float) -> float:
-        """Return the path length [m] from a point to the goal of ``distances`` (rows, cols)."""
+        """Return the path length from a point to a goal [m].
+
+        Args:
+            distances: Path length (rows, cols) from each cell to the goal [m], from ``distances_to``.
+            x: Position of the point in the world [m].
+            y: Position of the point in the world [m].
+        """
         ((row, col),) = self._grid.cells_of([[x, y]])
         return float(distances[row, col])
 

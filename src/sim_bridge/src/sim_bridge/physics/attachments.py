@@ -10,10 +10,14 @@ from sim_bridge.physics.registry import BodyRegistry, BulletLink
 
 
 class Attachments:
-    """Pairs of links, of which the first holds the second.
+    """Fixed constraints between pairs of links, of which the first holds the second.
 
     Bullet's constraints do not accept rigid bodies without links. A link that is attached to a static body is
     therefore constrained to the world frame, and the constraint is moved when the static body is.
+
+    Args:
+        bullet: The physics engine.
+        registry: Bullet's ids of the links.
     """
 
     def __init__(self, bullet: BulletClient, registry: BodyRegistry):
@@ -24,7 +28,12 @@ class Attachments:
         self._anchors: Dict[int, BulletLink] = {}
 
     def attach(self, first: str, second: str) -> None:
-        """Fix two links to each other in their present relative pose; they do not collide while attached."""
+        """Fix two links to each other in their present relative pose; they do not collide while attached.
+
+        Args:
+            first: Name of the holding link, ``model::link``.
+            second: Name of the held link.
+        """
         if (first, second) in self._constraints:
             self.detach(first, second)
         one, other = self._registry.links[first], self._registry.links[second]
@@ -64,11 +73,24 @@ class Attachments:
         return int(constraint_id)
 
     def are_attached(self, first: str, second: str) -> bool:
-        """Return whether ``first`` holds ``second``."""
+        """Return whether one link holds another.
+
+        Args:
+            first: Name of the holding link.
+            second: Name of the held link.
+        """
         return (first, second) in self._constraints
 
     def detach(self, first: str, second: str) -> None:
-        """Remove the constraint of two links that were attached in this order."""
+        """Remove the constraint between two links.
+
+        Args:
+            first: Name of the holding link.
+            second: Name of the held link.
+
+        Raises:
+            KeyError: The two are not attached in this order.
+        """
         constraint_id = self._constraints.pop((first, second))
         if constraint_id is not None:
             self._bullet.removeConstraint(constraint_id)

@@ -18,13 +18,13 @@ NO_SHAPE = -1
 def make_colliders(
     bullet: BulletClient, collisions: Sequence[Collision], moves: bool, origin: np.ndarray
 ) -> List[int]:
-    """Create the shapes of a body's collisions.
+    """Create the Bullet shapes of a body's collisions.
 
     Args:
         bullet: The physics engine.
         collisions: The solid parts of the body.
         moves: Whether physics moves the body; its meshes are then replaced by their convex hulls.
-        origin: Pose (4, 4) in the body frame of the frame that the shapes are created in.
+        origin: Pose (4, 4), in the body frame, of the frame in which the shapes are created.
 
     Returns:
         Bullet's shape ids, at least one: NO_SHAPE for a body without collisions.

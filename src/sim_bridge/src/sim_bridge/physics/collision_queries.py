@@ -18,8 +18,8 @@ class Contact(NamedTuple):
 
     Attributes:
         link: Name of the other link.
-        point: Position on the robot, in the world frame [m].
-        normal: Unit normal at the contact, pointing away from ``link``.
+        point: Position (3,) on the robot, in the world frame [m].
+        normal: Unit normal (3,) at the contact, in the world frame, pointing away from ``link``.
         depth: Penetration depth [m]; negative if the two are close but do not touch.
     """
 
@@ -37,7 +37,7 @@ class CollisionQueries:
         self._registry = registry
 
     def contacts(self, base: str, max_normal_z: float = math.inf) -> List[Contact]:
-        """Return the contacts of a robot.
+        """Return the contacts of a robot, as of the last physics step or ``detect_collisions``.
 
         Args:
             base: Name of the robot's base link.
@@ -54,18 +54,38 @@ class CollisionQueries:
         self._bullet.performCollisionDetection()
 
     def floor_below(self, x: float, y: float, z: float) -> Optional[float]:
-        """Return the height of the nearest body of the world below a point, None if there is none."""
+        """Return the height of the nearest body of the world below a point.
+
+        Args:
+            x: Position of the point in the world [m].
+            y: Position of the point in the world [m].
+            z: Height of the point [m].
+
+        Returns:
+            The height [m]; None if there is no body.
+        """
         (floor,) = self.floors_below([(x, y, z)])
         return floor if floor > -math.inf else None
 
     def floors_below(self, points: Sequence[Sequence[float]]) -> List[float]:
-        """Return the height of the floor below each of ``points`` (N, 3), -inf where there is none."""
+        """Return the height of the floor below each of several points.
+
+        Args:
+            points: Points (N, 3) in the world [m].
+
+        Returns:
+            The heights (N,) [m]; -inf where there is no floor.
+        """
         ends = [(x, y, z - FLOOR_SEARCH_DEPTH) for x, y, z in points]
         hits = self._bullet.rayTestBatch(points, ends, collisionFilterMask=WORLD_GROUPS)
         return [point[2] if body_id >= 0 else -math.inf for body_id, _, _, point, _ in hits]
 
     def set_robot_filter(self, base: str) -> None:
-        """Let a robot collide with the world and with other robots, but not count as a floor."""
+        """Set a robot's collision filter: it collides with the world and other robots, but is no floor.
+
+        Args:
+            base: Name of the robot's base link.
+        """
         body_id = self._registry.links[base].body_id
         for link_index in self._registry.parts_of(body_id):
             self._bullet.setCollisionFilterGroupMask(

@@ -94,7 +94,11 @@ class Engine:
         self._bullet.disconnect()
 
     def step(self, count: int = 1) -> None:
-        """Simulate ``count`` steps, a power of two, with constant motor targets."""
+        """Simulate physics steps with constant motor targets.
+
+        Args:
+            count: Number of steps, a power of two.
+        """
         if count != self._count:
             self._set_step_count(count)
         for name, mass in self._weightless.items():
@@ -103,7 +107,11 @@ class Engine:
         self._bullet.stepSimulation()
 
     def save_state(self) -> int:
-        """Save poses and velocities of all bodies; returns an id for ``restore_state``."""
+        """Save poses and velocities of all bodies.
+
+        Returns:
+            An id for ``restore_state``.
+        """
         return int(self._bullet.saveState())
 
     def restore_state(self, state_id: int) -> None:
@@ -177,11 +185,11 @@ class Engine:
         self._static_masses = {key: mass for key, mass in self._static_masses.items() if self.has_link(key)}
 
     def has_link(self, name: str) -> bool:
-        """Return whether the link ``name`` exists."""
+        """Return whether there is a link of this name."""
         return name in self._registry.links
 
     def state_of(self, name: str) -> KinematicState:
-        """Return the pose and velocity of a link."""
+        """Return the pose and velocity of a link's frame in the world."""
         link = self._registry.links[name]
         if link.link_index < 0:
             point, orientation = self._bullet.getBasePositionAndOrientation(link.body_id)
@@ -207,7 +215,12 @@ class Engine:
         return pose
 
     def set_state(self, name: str, state: KinematicState) -> None:
-        """Set the pose of a link, with its whole multibody, and the velocity unless it is static."""
+        """Set the pose of a link, with its whole multibody, and the velocity unless it is static.
+
+        Args:
+            name: Name of the link.
+            state: Pose and velocity of the link's frame in the world.
+        """
         link = self._registry.links[name]
         self._planar_bodies.pop(name, None)
         centre = state.pose @ link.centre
@@ -221,7 +234,11 @@ class Engine:
             self._bullet.resetBaseVelocity(link.body_id, linear.tolist(), state.angular.tolist())
 
     def set_positions(self, positions: Iterable[Tuple[str, float, float]]) -> None:
-        """Move single bodies to x, y; height and orientation stay (see KinematicBodies)."""
+        """Move single bodies in the plane; height and orientation stay (see KinematicBodies).
+
+        Args:
+            positions: Link name, x and y in the world frame [m] of each body.
+        """
         set_pose = self._bullet.resetBasePositionAndOrientation
         for name, x, y in positions:
             body = self._planar_bodies.get(name)
@@ -242,7 +259,13 @@ class Engine:
             self._planar_bodies[name] = _PlanarBody(body_id, x, y, z, orientation, link_above_origin)
 
     def apply_wrench(self, name: str, force: Sequence[float], torque: Sequence[float]) -> None:
-        """Apply a force [N] at the centre of mass, and a torque [N m], in the world frame for one step."""
+        """Apply a wrench to a link for one physics step.
+
+        Args:
+            name: Name of the link.
+            force: Force (3,) at the centre of mass, in the world frame [N].
+            torque: Torque (3,), in the world frame [N m].
+        """
         link = self._registry.links[name]
         pose, *_ = self._bullet.getBasePositionAndOrientation(link.body_id)
         if link.link_index >= 0:
@@ -259,7 +282,14 @@ class Engine:
         return MassProperties(mass, link.centre, np.array(moments), name not in self._weightless)
 
     def set_mass(self, name: str, mass: float, moments: Sequence[float], has_gravity: bool) -> None:
-        """Set the mass [kg], the principal moments (3,) [kg m^2] and gravity of a link."""
+        """Set the mass properties of a link.
+
+        Args:
+            name: Name of the link.
+            mass: Mass [kg].
+            moments: Principal moments of inertia (3,) [kg m^2].
+            has_gravity: Whether gravity acts on the link.
+        """
         link = self._registry.links[name]
         if self._registry.is_static(link.body_id):
             self._static_masses[name] = MassProperties(mass, link.centre, np.array(moments), has_gravity)

@@ -31,7 +31,14 @@ class LinkWrench:
 
 @dataclass(frozen=True)
 class JointEffort:
-    """An ``effort`` [N m or N] on a joint from ``start`` to ``end`` [s] (gazebo_msgs/ApplyJointEffort)."""
+    """An effort on a joint (gazebo_msgs/ApplyJointEffort).
+
+    Attributes:
+        joint: Name of the joint.
+        effort: Torque or force [N m or N].
+        start: Simulated time at which it begins [s].
+        end: Simulated time at which it ends [s].
+    """
 
     joint: str
     effort: float
@@ -40,7 +47,13 @@ class JointEffort:
 
 
 class Forces:
-    """The wrenches and efforts that act now or later."""
+    """The wrenches and efforts that act now or later.
+
+    Args:
+        engine: The physics engine.
+        models: Checks the names of links.
+        joints: Checks the names of joints.
+    """
 
     def __init__(self, engine: Engine, models: Models, joints: ModelJoints):
         self._engine = engine
@@ -50,12 +63,20 @@ class Forces:
         self._efforts: List[JointEffort] = []
 
     def apply_link_wrench(self, wrench: LinkWrench) -> None:
-        """Add a wrench. Raises UnknownEntityError if there is no such link."""
+        """Add a wrench.
+
+        Raises:
+            UnknownEntityError: There is no such link.
+        """
         self._models.check_link(wrench.link)
         self._wrenches.append(wrench)
 
     def apply_joint_effort(self, effort: JointEffort) -> None:
-        """Add an effort. Raises UnknownEntityError if there is no such joint."""
+        """Add an effort.
+
+        Raises:
+            UnknownEntityError: There is no such joint.
+        """
         self._joints.get(effort.joint)
         self._efforts.append(effort)
 
@@ -78,7 +99,11 @@ class Forces:
         return bool(self._wrenches or self._efforts)
 
     def apply(self, stamp: float) -> None:
-        """Apply what acts at ``stamp``, before the physics step that begins then."""
+        """Apply the active wrenches and efforts for one physics step, and remove those that have ended.
+
+        Args:
+            stamp: Simulated time at the beginning of the step [s].
+        """
         for wrench in self._wrenches:
             if wrench.start <= stamp < wrench.end:
                 self._engine.apply_wrench(wrench.link, wrench.force.tolist(), wrench.torque.tolist())

@@ -9,13 +9,24 @@ from sim_bridge.physics.registry import BulletLink
 
 
 def matrix_of(point: Sequence[float], orientation: Sequence[float]) -> np.ndarray:
-    """Return the pose (4, 4) of a position and a quaternion (x, y, z, w)."""
+    """Return the pose (4, 4) of a position and an orientation.
+
+    Args:
+        point: Position (3,) [m].
+        orientation: Unit quaternion (x, y, z, w).
+    """
     (x, y, z), r = point, pybullet.getMatrixFromQuaternion(orientation)
     return np.array((r[:3] + (x,), r[3:6] + (y,), r[6:] + (z,), (0.0, 0.0, 0.0, 1.0)))
 
 
 def link_at(link: BulletLink, point: Sequence[float], orientation: Sequence[float]) -> np.ndarray:
-    """Return the pose (4, 4) of a link from the position and orientation of its centre of mass."""
+    """Return the pose (4, 4) of a link's frame in the world.
+
+    Args:
+        link: The link.
+        point: Position (3,) of its centre of mass in the world [m].
+        orientation: Orientation of its principal axes in the world, quaternion (x, y, z, w).
+    """
     if link.offset is None:
         return matrix_of(point, orientation) @ link.from_centre
     (x, y, z), (a, b, c) = point, link.offset  # plain floats are faster here than numpy

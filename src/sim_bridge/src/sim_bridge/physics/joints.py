@@ -12,7 +12,12 @@ LIMIT_FORCE = 1e4
 
 
 class JointState(NamedTuple):
-    """State of a joint: ``position`` [rad or m] and ``speed`` [rad/s or m/s]."""
+    """State of a joint.
+
+    Attributes:
+        position: Position [rad or m].
+        speed: Speed [rad/s or m/s].
+    """
 
     position: float
     speed: float
@@ -31,12 +36,22 @@ class Joints:
         return JointState(*self._bullet.getJointState(joint.body_id, joint.link_index)[:2])
 
     def set_state(self, name: str, state: JointState) -> None:
-        """Set the position and speed of a joint; its child links move with it."""
+        """Set the position and speed of a joint; its child links move with it.
+
+        Args:
+            name: Name of the joint, ``model::joint``.
+            state: Position and speed.
+        """
         joint = self._registry.joints[name]
         self._bullet.resetJointState(joint.body_id, joint.link_index, state.position, state.speed)
 
     def apply_effort(self, name: str, effort: float) -> None:
-        """Apply an effort [N m or N], clipped to the joint's limit, during the next step."""
+        """Apply an effort during the next physics step.
+
+        Args:
+            name: Name of the joint.
+            effort: Torque or force [N m or N], clipped to the joint's limit.
+        """
         joint = self._registry.joints[name]
         limit = joint.joint.effort
         self._bullet.setJointMotorControl2(
@@ -44,7 +59,14 @@ class Joints:
         )
 
     def set_limits(self, name: str, lower: float, upper: float, damping: float) -> None:
-        """Set the limits [rad or m] and the damping [N m s/rad or N s/m] of a joint."""
+        """Set the limits and the damping of a joint.
+
+        Args:
+            name: Name of the joint.
+            lower: Lower limit [rad or m].
+            upper: Upper limit [rad or m].
+            damping: Viscous damping [N m s/rad or N s/m].
+        """
         joint = self._registry.joints[name]
         limit_joint(self._bullet, joint.body_id, joint.link_index, lower, upper)
         self._bullet.changeDynamics(joint.body_id, joint.link_index, jointDamping=damping)
@@ -55,7 +77,12 @@ class Joints:
 
 
 class Motors:
-    """Velocity control of several joints of one multibody."""
+    """Velocity control of several joints of one multibody.
+
+    Args:
+        bullet: The physics engine.
+        joints: The joints, at least one.
+    """
 
     def __init__(self, bullet: BulletClient, joints: Sequence[BulletJoint]):
         self._bullet = bullet
@@ -63,19 +90,32 @@ class Motors:
         self._indices: List[int] = [joint.link_index for joint in joints]
 
     def set_velocities(self, speeds: Sequence[float], efforts: Sequence[float]) -> None:
-        """Set the target ``speeds`` [rad/s] and the largest ``efforts`` [N m] of the motors."""
+        """Set the targets of the motors, in the order of the joints.
+
+        Args:
+            speeds: Target speeds [rad/s].
+            efforts: Largest torques [N m].
+        """
         self._bullet.setJointMotorControlArray(
             self._body_id, self._indices, pybullet.VELOCITY_CONTROL, targetVelocities=speeds, forces=efforts
         )
 
     def states(self) -> Tuple[Tuple[float, ...], Tuple[float, ...]]:
-        """Return the angles [rad] and the speeds [rad/s] of the joints."""
+        """Return the angles [rad] and the speeds [rad/s] of the joints, in their order."""
         states = self._bullet.getJointStates(self._body_id, self._indices)
         return tuple(state[0] for state in states), tuple(state[1] for state in states)
 
 
 def limit_joint(bullet: BulletClient, body_id: int, link_index: int, lower: float, upper: float) -> None:
-    """Set the limits [rad or m] of a joint; infinite ones leave it unlimited."""
+    """Set the limits of a joint; with an infinite one it stays unlimited.
+
+    Args:
+        bullet: The physics engine.
+        body_id: Bullet's unique id of the multibody.
+        link_index: Bullet's index of the joint and its child link.
+        lower: Lower limit [rad or m].
+        upper: Upper limit [rad or m].
+    """
     if upper - lower < np.inf:
         bullet.changeDynamics(
             body_id, link_index, jointLowerLimit=lower, jointUpperLimit=upper, jointLimitForce=LIMIT_FORCE

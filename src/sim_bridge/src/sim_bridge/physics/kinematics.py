@@ -30,11 +30,19 @@ class KinematicState:
         return to_pose2(self.pose)
 
     def of_frame(self, frame_in_this: np.ndarray) -> "KinematicState":
-        """Return the state of a frame that is fixed to this one at ``frame_in_this`` (4, 4)."""
+        """Return the state of a frame that is fixed to this one.
+
+        Args:
+            frame_in_this: Pose (4, 4) of that frame in this one.
+        """
         return self.at(self.pose @ frame_in_this)
 
     def at(self, pose: np.ndarray) -> "KinematicState":
-        """Return the state of a frame that is rigidly attached to this one and is at ``pose`` (4, 4)."""
+        """Return the state of a frame that is rigidly attached to this one.
+
+        Args:
+            pose: Pose (4, 4) of that frame in the world.
+        """
         arm = pose[:3, 3] - self.pose[:3, 3]
         return KinematicState(pose, self.linear + cross(self.angular, arm), self.angular)
 
@@ -48,7 +56,7 @@ class KinematicBodies(Protocol):
     """Bodies that are moved by a script, not by physics; the engine implements it."""
 
     def has_link(self, name: str) -> bool:
-        """Return whether the link ``name`` exists."""
+        """Return whether there is a link of this name."""
 
     def set_positions(self, positions: Iterable[Tuple[str, float, float]]) -> None:
         """Move bodies to positions in the plane.

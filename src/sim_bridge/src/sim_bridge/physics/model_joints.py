@@ -14,6 +14,9 @@ class ModelJoints:
     """Joints by their names, ``model::joint``.
 
     Methods that take a name raise UnknownEntityError if there is no such joint.
+
+    Args:
+        engine: Holds the joints.
     """
 
     def __init__(self, engine: Engine):
@@ -29,7 +32,11 @@ class ModelJoints:
         self._joints.update((joint.name, joint) for joint in joints)
 
     def remove_model(self, model: str) -> List[str]:
-        """Remove the joints of a model; returns their names."""
+        """Remove the joints of a model.
+
+        Returns:
+            Names of the removed joints.
+        """
         removed = [joint.name for joint in self._joints.values() if joint.model == model]
         for name in removed:
             del self._joints[name]
@@ -42,12 +49,16 @@ class ModelJoints:
         ]
 
     def root_links(self, links: Iterable[str]) -> List[str]:
-        """Return those of ``links`` that are no child of another link; their children move with them."""
+        """Return those of some links that are no child of another link; their children move with them."""
         children: Set[str] = {joint.child for joint in self._joints.values() if joint.parent}
         return [link for link in links if link not in children]
 
     def full_name(self, name: str) -> str:
-        """Return ``model::joint`` of the first joint of that name, given with or without its model."""
+        """Return the full name, ``model::joint``, of a joint.
+
+        Args:
+            name: Name with or without its model; the first joint of that name is used.
+        """
         for known in self._joints:
             if known == name or known.endswith("::" + name):
                 return known
@@ -64,7 +75,11 @@ class ModelJoints:
         return self._engine.joints.state(self.get(name).name)
 
     def set_positions(self, positions: Mapping[str, float]) -> None:
-        """Set joint positions [rad or m] at zero speed; fixed joints are ignored."""
+        """Set joint positions at zero speed; fixed joints are ignored.
+
+        Args:
+            positions: Position [rad or m] by joint name.
+        """
         for name, position in positions.items():
             if self.get(name).kind != "fixed":
                 self._engine.joints.set_state(name, JointState(position, 0.0))
@@ -74,7 +89,14 @@ class ModelJoints:
         self.set_positions({joint.name: joint.start for joint in self._joints.values()})
 
     def set_limits(self, name: str, lower: float, upper: float, damping: float) -> None:
-        """Set limits [rad or m] and damping [N m s/rad or N s/m]; a fixed joint stays fixed."""
+        """Set the limits and the damping of a joint; a fixed joint stays fixed.
+
+        Args:
+            name: Name of the joint.
+            lower: Lower limit [rad or m].
+            upper: Upper limit [rad or m].
+            damping: Viscous damping [N m s/rad or N s/m].
+        """
         self._joints[name] = replace(self.get(name), lower=lower, upper=upper, damping=damping)
         if self._joints[name].kind != "fixed":
             self._engine.joints.set_limits(name, lower, upper, damping)

@@ -19,6 +19,11 @@ class Models:
 
     Keeps the engine and the sensors' view of the scene consistent. Methods that take a name raise
     UnknownEntityError if there is no such model or link.
+
+    Args:
+        engine: Holds the links.
+        joints: Joints of the models.
+        view: The sensors' view of the scene.
     """
 
     def __init__(self, engine: Engine, joints: ModelJoints, view: SceneView):
@@ -40,7 +45,11 @@ class Models:
         self._view.add(vehicle.body())
 
     def remove(self, name: str) -> List[str]:
-        """Remove a model from the engine and from view; returns the names of its links."""
+        """Remove a model from the engine and from view.
+
+        Returns:
+            Names of its links.
+        """
         links = self.links_of(name)
         vehicle = self._vehicles.pop(name, None)
         for link in [vehicle.base] if vehicle else links:
@@ -60,12 +69,16 @@ class Models:
         return list(dict.fromkeys([*(body.model for body in self._bodies.values()), *self._vehicles]))
 
     def check_free(self, names: Iterable[str]) -> None:
-        """Raise WorldError if a model has one of these names."""
+        """Check that no model has one of these names.
+
+        Raises:
+            WorldError: A name is taken.
+        """
         for taken in set(names).intersection(self.names()):
             raise WorldError(f"{taken} is in the world already")
 
     def links_of(self, model: str) -> List[str]:
-        """Return the names of a model's links; the first is the one whose pose stands for the model's."""
+        """Return the names of a model's links, the one that carries the model's frame first."""
         if model in self._vehicles:
             return list(self._vehicles[model].links)
         links = [body.name for body in self._bodies.values() if body.model == model]
@@ -85,13 +98,18 @@ class Models:
         )
 
     def state(self, name: str) -> KinematicState:
-        """Return the pose and velocity of a model's frame."""
+        """Return the pose and velocity of a model's frame in the world."""
         link = self.links_of(name)[0]
         state = self._engine.state_of(link)
         return state.of_frame(inverse(self._bodies[link].pose_in_model)) if link in self._bodies else state
 
     def set_state(self, name: str, state: KinematicState) -> None:
-        """Set the pose and velocity of a model with all its links."""
+        """Set the pose and velocity of a model with all its links.
+
+        Args:
+            name: Name of the model.
+            state: Pose and velocity of the model's frame in the world.
+        """
         displacement = state.pose @ inverse(self.state(name).pose)
         vehicle = self._vehicles.get(name)
         for link in [vehicle.base] if vehicle else self._joints.root_links(self.links_of(name)):
@@ -103,7 +121,11 @@ class Models:
             self._set_state(name, at_rest(self._bodies[name].pose_in_world))
 
     def full_link_name(self, name: str) -> str:
-        """Return ``model::link`` of the first link of that name, given with or without its model."""
+        """Return the full name, ``model::link``, of a link.
+
+        Args:
+            name: Name with or without its model; the first link of that name is used.
+        """
         known = self._links()
         for link in known:
             if link == name or link.endswith("::" + name):
@@ -111,18 +133,27 @@ class Models:
         raise _unknown("link", name, known)
 
     def check_link(self, link: str) -> None:
-        """Raise UnknownEntityError if there is no such link."""
+        """Check that a link exists.
+
+        Raises:
+            UnknownEntityError: There is no such link.
+        """
         model = link.split("::", 1)[0]
         if model not in self.names() or link not in self.links_of(model):
             raise _unknown("link", link, self._links())
 
     def link_state(self, link: str) -> KinematicState:
-        """Return the pose and velocity of a link."""
+        """Return the pose and velocity of a link's frame in the world."""
         self.check_link(link)
         return self._engine.state_of(link)
 
     def set_link_state(self, link: str, state: KinematicState) -> None:
-        """Set the pose and velocity of a link."""
+        """Set the pose and velocity of a link, with its whole multibody.
+
+        Args:
+            link: Name of the link.
+            state: Pose and velocity of the link's frame in the world.
+        """
         self.check_link(link)
         self._set_state(link, state)
 

@@ -30,9 +30,13 @@ class KinematicTree:
 
 
 def kinematic_trees(bodies: Sequence[Body], joints: Sequence[Joint]) -> List[KinematicTree]:
-    """Return the trees that ``joints``, which must not form loops, make of ``bodies``.
+    """Group bodies into kinematic trees.
 
     A joint to the world gets a static root without shapes, named after the joint.
+
+    Args:
+        bodies: The bodies.
+        joints: Joints between them or to the world; they must not form loops.
     """
     by_parent: Dict[str, List[Joint]] = {}
     for joint in joints:

@@ -37,7 +37,13 @@ class BulletLink:
 
 @dataclass(frozen=True, eq=False)
 class BulletJoint:
-    """A movable joint in Bullet: ids of its child link, and its description."""
+    """A movable joint in Bullet.
+
+    Attributes:
+        body_id: Bullet's unique id of the multibody.
+        link_index: Bullet's index of the child link.
+        joint: Description of the joint.
+    """
 
     body_id: int
     link_index: int
@@ -64,11 +70,22 @@ class BodyRegistry:
         return body_id not in self.dynamic_bodies
 
     def assign_link(self, body_id: int, link_index: int, link: str) -> None:
-        """Record that a Bullet link belongs to the link ``link``; one with many shapes has several."""
+        """Record which link a Bullet link belongs to; a link with many shapes has several.
+
+        Args:
+            body_id: Bullet's unique id of the body.
+            link_index: Bullet's index of the link; -1 for the root.
+            link: Name of the link, ``model::link``.
+        """
         self._link_names[body_id, link_index] = link
 
     def link_of(self, body_id: int, link_index: int) -> str:
-        """Return the name of the link that a Bullet link belongs to."""
+        """Return the name of the link that a Bullet link belongs to.
+
+        Args:
+            body_id: Bullet's unique id of the body.
+            link_index: Bullet's index of the link; -1 for the root.
+        """
         return self._link_names[body_id, link_index]
 
     def parts_of(self, body_id: int) -> List[int]:

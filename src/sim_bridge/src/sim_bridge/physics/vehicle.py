@@ -23,7 +23,8 @@ class Overlap(NamedTuple):
 
     Attributes:
         links: Names of the overlapped links.
-        x: Displacement in the world frame that resolves the deepest overlap [m], as is ``y``.
+        x: Displacement along the world's x axis that resolves the deepest overlap [m].
+        y: Displacement along the world's y axis [m].
     """
 
     links: Tuple[str, ...]
@@ -42,6 +43,10 @@ class Vehicle:
         left_count: Number of wheels on the left.
         torque: Largest torque of each motor [N m].
         base_in_space: Start pose (4, 4) of the base in the world frame.
+
+    Attributes:
+        links: Names of the links, ``model::link``, the base first.
+        base: Name of the base link.
     """
 
     def __init__(
@@ -67,7 +72,12 @@ class Vehicle:
         self._speeds: Optional[Tuple[float, float]] = None
 
     def drive(self, left_speed: float, right_speed: float) -> None:
-        """Set the target speeds [rad/s] of the wheels on the left and on the right."""
+        """Set the target speeds of the wheels.
+
+        Args:
+            left_speed: Of the wheels on the left [rad/s].
+            right_speed: Of the wheels on the right [rad/s].
+        """
         if self._speeds != (left_speed, right_speed):
             self._speeds = (left_speed, right_speed)
             speeds = [left_speed] * self._left_count + [right_speed] * self._right_count
@@ -78,7 +88,7 @@ class Vehicle:
         self._speeds = None
 
     def state(self) -> KinematicState:
-        """Return the pose and velocity of the base frame."""
+        """Return the pose and velocity of the base frame in the world."""
         return self._engine.state_of(self.base)
 
     def wheels(self) -> Tuple[Tuple[float, ...], Tuple[float, ...]]:
@@ -95,7 +105,14 @@ class Vehicle:
         return [contact for contact in contacts if contact.depth >= 0.0]
 
     def floors_below(self, points: Sequence[Sequence[float]]) -> List[float]:
-        """Return the height of the floor below each of ``points`` (N, 3), -inf where there is none."""
+        """Return the height of the floor below each of several points.
+
+        Args:
+            points: Points (N, 3) in the world [m].
+
+        Returns:
+            The heights (N,) [m]; -inf where there is no floor.
+        """
         return self._engine.collision_queries.floors_below(points)
 
     @property
@@ -104,7 +121,7 @@ class Vehicle:
         return self._engine.gravity
 
     def overlap(self) -> Optional[Overlap]:
-        """Return what the robot overlaps, None if nothing."""
+        """Return the obstacles that the robot overlaps; None if there are none."""
         collision_queries = self._engine.collision_queries
         collision_queries.detect_collisions()
         sunk = [
@@ -120,7 +137,11 @@ class Vehicle:
 
 
 def twist_in_base(state: KinematicState) -> Twist2:
-    """Return the forward velocity and the turn rate of the base, in the base frame."""
+    """Return the velocity of a base along its x axis [m/s] and its turn rate [rad/s].
+
+    Args:
+        state: Pose and velocity of the base frame in the world.
+    """
     linear, pose = state.linear, state.pose
     forward = linear.item(0) * pose.item(0, 0) + linear.item(1) * pose.item(1, 0)
     return Twist2(forward, state.angular.item(2))

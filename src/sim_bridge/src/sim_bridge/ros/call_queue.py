@@ -33,7 +33,7 @@ class CallQueue:
             raise rospy.ServiceException("the simulation is shutting down") from None
 
     def submit(self, function: Callable[[], T]) -> "Future[T]":
-        """Have a function run between two steps, without waiting for it."""
+        """Submit a function to be run between two steps, without waiting for it."""
         future: Future[T] = Future()
         with self._changed:
             if self._is_closed:
@@ -70,7 +70,11 @@ class CallQueue:
         return self._has_new
 
     def wait(self, seconds: float) -> None:
-        """Wait for new calls, at most ``seconds`` [wall s]."""
+        """Wait for new calls.
+
+        Args:
+            seconds: Longest time to wait [wall s].
+        """
         with self._changed:
             if not (self._has_new or self._is_closed):
                 self._changed.wait(seconds)

@@ -25,7 +25,12 @@ POINT_FIELDS = [PointField(name, offset, PointField.FLOAT32, 1) for name, offset
 
 
 class CameraTopics:
-    """Publishes the images of a camera on the topics that have subscribers."""
+    """Publishes the images of a camera on the topics that have subscribers.
+
+    Args:
+        profile: Frame, lens and topics.
+        publishers: Publishers of the robot.
+    """
 
     def __init__(self, profile: CameraProfile, publishers: RobotPublishers):
         self._settings = profile.settings
@@ -48,6 +53,12 @@ class CameraTopics:
         return any(topic.get_num_connections() for topic, _ in self._topics)
 
     def publish(self, image: CameraReading, stamp: rospy.Time) -> None:
+        """Publish the images.
+
+        Args:
+            image: Colour and depth image.
+            stamp: Time of the measurement.
+        """
         for topic, message_of in self._topics:
             if topic.get_num_connections():
                 message = message_of(image, self._settings)

@@ -26,12 +26,12 @@ SMOOTHED_INPUT = "input/navi"
 
 
 class CommandTopics:
-    """Keeps the latest command received on any of some topics.
+    """Stores the latest velocity command received on any of several topics.
 
     Args:
         robot: Name of the robot, for the log.
-        namespace: Of the topics.
-        topics: Their names.
+        namespace: Namespace of the topics.
+        topics: Names of the topics.
     """
 
     def __init__(self, robot: str, namespace: str, topics):
@@ -42,7 +42,11 @@ class CommandTopics:
             self._connections.append(self._subscribed(namespace, topic, self._on_command))
 
     def pop(self, _now: float) -> Optional[Twist2]:
-        """Return the command received since the last call, if any; ``_now`` is simulated time [s]."""
+        """Return the command received since the last call; None if there is none.
+
+        Args:
+            _now: Simulated time [s].
+        """
         command, self._command = self._command, None
         return command
 

@@ -23,7 +23,7 @@ def pose3_from_msg(message: Pose) -> np.ndarray:
     """Convert a pose; a zero quaternion is the identity.
 
     Returns:
-        The pose, (4, 4).
+        The pose (4, 4).
 
     Raises:
         WorldError: A number is not finite, or too large for a coordinate.
@@ -45,7 +45,11 @@ def state_to_msgs(motion: KinematicState) -> Tuple[Pose, Twist]:
 
 
 def state_from_msgs(pose: Pose, twist: Twist) -> KinematicState:
-    """Convert a pose and a twist. Raises WorldError if a number is not finite or too large."""
+    """Convert a pose and a twist to a kinematic state.
+
+    Raises:
+        WorldError: A number is not finite, or too large.
+    """
     linear, angular = vector_from_msg(twist.linear), vector_from_msg(twist.angular)
     if not (np.isfinite(linear).all() and np.isfinite(angular).all()):
         raise WorldError("the twist is not finite")
@@ -55,10 +59,17 @@ def state_from_msgs(pose: Pose, twist: Twist) -> KinematicState:
 
 
 def vector_from_msg(message) -> np.ndarray:
-    """Convert a Vector3 or Point to (3,)."""
+    """Convert a Vector3 or Point to an array (3,)."""
     return np.array([message.x, message.y, message.z])
 
 
 def covariance_of(variances: Sequence[float]) -> List[float]:
-    """Return the covariance (N * N,), row by row, of N independent values."""
+    """Return the covariance matrix of independent values.
+
+    Args:
+        variances: Variance of each of N values.
+
+    Returns:
+        The matrix (N * N,), row by row.
+    """
     return np.diag(variances).ravel().tolist()

@@ -15,7 +15,13 @@ _STAMP = struct.Struct("<3I")
 
 
 class OdometryMsg(Odometry):
-    """A reusable nav_msgs/Odometry; ``covariance``: (36,), of pose and twist."""
+    """A reusable nav_msgs/Odometry.
+
+    Args:
+        frame: Parent frame.
+        base_frame: Child frame.
+        covariance: Covariance (36,) of the pose and of the twist, row by row.
+    """
 
     def __init__(self, frame: str, base_frame: str, covariance):
         super().__init__()
@@ -25,6 +31,13 @@ class OdometryMsg(Odometry):
         self._covariance = struct.pack("<36d", *covariance)
 
     def fill(self, base: Pose2, twist: Twist2, stamp) -> None:
+        """Set the values of a message.
+
+        Args:
+            base: Pose of the base in the parent frame.
+            twist: Velocity in the base frame.
+            stamp: Time of the measurement.
+        """
         self.header.stamp = stamp
         self.pose.pose = pose2_to_msg(base)
         self.twist.twist.linear.x, self.twist.twist.angular.z = twist.v, twist.omega
@@ -40,7 +53,12 @@ class OdometryMsg(Odometry):
 
 
 class TransformMsg(TransformStamped):
-    """A reusable geometry_msgs/TransformStamped."""
+    """A reusable geometry_msgs/TransformStamped.
+
+    Args:
+        parent: Parent frame.
+        child: Child frame.
+    """
 
     def __init__(self, parent: str, child: str):
         super().__init__()
@@ -48,6 +66,12 @@ class TransformMsg(TransformStamped):
         self._frames = _text(parent) + _text(child)
 
     def fill(self, child_in_parent: Pose2, stamp) -> None:
+        """Set the values of a message.
+
+        Args:
+            child_in_parent: Pose of the child frame.
+            stamp: Time of the measurement.
+        """
         self.header.stamp = stamp
         self.transform.translation.x = child_in_parent.x
         self.transform.translation.y = child_in_parent.y

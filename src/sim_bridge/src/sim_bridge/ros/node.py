@@ -37,7 +37,11 @@ from sim_bridge.world import World
 
 
 def world_of_file(settings: BridgeSettings) -> World:
-    """Load the world of the parameter ~world. Raises WorldError."""
+    """Load the world of the parameter ~world.
+
+    Raises:
+        WorldError: The file cannot be used.
+    """
     return load_world(settings.world, model_folders(), settings.strict)
 
 

@@ -23,8 +23,8 @@ class RobotPublishers:
     """Creates publishers below a namespace, and frame names with a prefix.
 
     Args:
-        namespace: Of the topics.
-        tf_prefix: Of the frames; empty for none.
+        namespace: Namespace of the topics.
+        tf_prefix: Prefix of the frames, without slash; empty for none.
     """
 
     def __init__(self, namespace: str, tf_prefix: str):
@@ -35,7 +35,14 @@ class RobotPublishers:
     def publisher(
         self, topic: str, kind: type, queue_size: int = 10, latch: bool = False
     ) -> CountingPublisher:
-        """Advertise a topic, relative to the namespace."""
+        """Advertise a topic.
+
+        Args:
+            topic: Name of the topic, relative to the namespace.
+            kind: Type of its messages.
+            queue_size: Number of messages that wait for a slow subscriber.
+            latch: Whether new subscribers receive the last message.
+        """
         name = rospy.names.ns_join(self._namespace, topic)
         publisher = CountingPublisher(name, kind, queue_size=queue_size, latch=latch, tcp_nodelay=True)
         self.publishers.append(publisher)

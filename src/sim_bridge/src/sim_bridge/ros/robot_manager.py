@@ -21,7 +21,7 @@ class RobotManager:
     Args:
         scene: The simulated world.
         calls: Queue of the thread that owns the scene.
-        joint_steps: Default of the steps between two joint states of a robot.
+        joint_steps: Steps between two joint states of a robot whose description has no rate.
     """
 
     def __init__(self, scene: Scene, calls: CallQueue, joint_steps: int):
@@ -34,17 +34,17 @@ class RobotManager:
     def add(
         self, name: str, profile: RobotProfile, base_in_world: Pose2, z: float = 0.0, namespace: str = ""
     ) -> None:
-        """Add a robot to the scene, on the floor at or below a height, and advertise its topics.
+        """Put a robot on the floor, and advertise its topics.
 
         Args:
-            name: Of the robot.
-            profile: Its description.
-            base_in_world: Its initial pose.
-            z: The height [m].
-            namespace: Of its topics, if its description has none.
+            name: Name of the robot's model.
+            profile: Parts, drive and sensors.
+            base_in_world: Start pose of the base.
+            z: Height at or below which the floor is searched [m].
+            namespace: Namespace of its topics, if its description has none.
 
         Raises:
-            WorldError: It cannot stand there, or the name is taken.
+            WorldError: The robot cannot stand there, or the name is taken.
             RobotError: The description cannot be used.
         """
         for warning in profile.warnings:
@@ -58,7 +58,11 @@ class RobotManager:
         )
 
     def remove(self, name: str) -> None:
-        """Remove a model from the scene, and its topics if it is a robot. Raises UnknownEntityError."""
+        """Remove a model from the scene, and its topics if it is a robot.
+
+        Raises:
+            UnknownEntityError: There is no such model.
+        """
         self._scene.remove_model(name)
         topics = self._robots.pop(name, None)
         if topics is not None:

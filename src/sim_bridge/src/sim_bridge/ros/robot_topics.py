@@ -34,11 +34,11 @@ class RobotTopics:
 
     Args:
         scene: The simulated world.
-        name: Of the robot in the scene.
+        name: Name of the robot's model.
         calls: Queue of the thread that owns the scene.
         joint_steps: Steps between two joint states, if the robot's description has no rate.
-        namespace: Of the topics.
-        tf_prefix: Of the frames.
+        namespace: Namespace of the topics.
+        tf_prefix: Prefix of the frames.
     """
 
     def __init__(

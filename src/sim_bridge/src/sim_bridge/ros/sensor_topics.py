@@ -19,17 +19,30 @@ from sim_bridge.sensors.lidar import LaserProfile
 
 
 class SensorTopics(Protocol):
-    """Topics of one sensor; made from its spec and the robot's publishers."""
+    """Topics of one sensor, made from its spec and the robot's publishers."""
 
     def has_subscribers(self) -> bool:
-        """Return whether there are subscribers; a sensor on demand measures only then."""
+        """Return whether there are subscribers; a sensor on demand measures only while there are."""
 
     def publish(self, value: Any, stamp: rospy.Time) -> None:
-        """Publish what was measured at ``stamp`` on the topics with subscribers."""
+        """Publish a measurement on the topics that have subscribers.
+
+        Args:
+            value: The measurement, of the sensor's type.
+            stamp: Time of the measurement.
+        """
 
 
 class SingleTopic:
-    """Publishes readings on the ``topic`` and in the ``frame`` of a spec; ``to_msg`` converts them."""
+    """Publishes the measurements of a sensor that has one topic.
+
+    Args:
+        spec: Spec of the sensor, with ``topic`` and ``frame``.
+        publishers: Publishers of the robot.
+        kind: Type of the messages.
+        to_msg: Converts a measurement and the spec to a message; the header is set afterwards.
+        queue_size: Number of messages that wait for a slow subscriber.
+    """
 
     def __init__(
         self,
@@ -48,6 +61,12 @@ class SingleTopic:
         return self._publisher.get_num_connections() > 0
 
     def publish(self, value: Any, stamp: rospy.Time) -> None:
+        """Publish a measurement if there are subscribers.
+
+        Args:
+            value: The measurement, of the sensor's type.
+            stamp: Time of the measurement.
+        """
         if self.has_subscribers():
             message = self._to_msg(value, self._spec)
             message.header.stamp, message.header.frame_id = stamp, self._frame
@@ -57,12 +76,12 @@ class SingleTopic:
 def one_topic(
     kind: type, to_msg: Callable[[Any, Any], Any], queue_size: int = 10
 ) -> Callable[[Any, RobotPublishers], SensorTopics]:
-    """Return a factory of the topic of a sensor that has just one.
+    """Return a factory of SingleTopic.
 
     Args:
-        kind: Type of its messages.
-        to_msg: Converts a value and the spec to a message; the header is filled in later.
-        queue_size: Of the publisher.
+        kind: Type of the messages.
+        to_msg: Converts a measurement and the spec to a message; the header is set afterwards.
+        queue_size: Number of messages that wait for a slow subscriber.
     """
     return lambda spec, publishers: SingleTopic(spec, publishers, kind, to_msg, queue_size)
 
@@ -77,7 +96,12 @@ TOPICS: Dict[type, Callable[[Any, RobotPublishers], SensorTopics]] = {
 
 
 class RobotSensorTopics:
-    """Topics of all sensors of a robot's description."""
+    """Topics of all sensors of a robot's description.
+
+    Args:
+        robot: The robot.
+        publishers: Its publishers.
+    """
 
     def __init__(self, robot: Robot, publishers: RobotPublishers):
         self._robot = robot

@@ -19,7 +19,18 @@ STAY = 1e9
 
 
 def read_actor(actor: Element, warnings: SkippedElements) -> Tuple[Body, Optional[ScriptedTrajectory]]:
-    """Return the body of an actor, and its trajectory; None if it does not move. Raises WorldError."""
+    """Read an <actor>: a cylinder that follows the actor's trajectory.
+
+    Args:
+        actor: The element.
+        warnings: Receives warnings about ignored plugins and elements.
+
+    Returns:
+        The body, and its trajectory; None if it does not move.
+
+    Raises:
+        WorldError: A value is not valid.
+    """
     warnings.check_children(actor)
     for plugin in actor.children("plugin"):
         if plugin_name(plugin) not in REDUNDANT_PLUGINS:

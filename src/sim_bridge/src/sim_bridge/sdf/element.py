@@ -27,11 +27,13 @@ _VERSION_NUMBER = re.compile(r"[0-9]{1,9}$")
 class Element:
     """An element of an SDF or URDF file, with typed access to its content.
 
+    Methods that convert a text raise WorldError, which names the file and the element, if it is not valid.
+
     Attributes:
         xml: The XML element.
         file: Name of the file, for errors.
         version: SDF version of the file, e.g. (1, 6).
-        tag: Its tag.
+        tag: Tag of the element.
         name: Its attribute ``name``.
         place: Path of the element in the file, for errors.
     """
@@ -60,14 +62,18 @@ class Element:
                 yield Element(xml, self.file, self.place, self.version)
 
     def child(self, *path: str) -> Optional["Element"]:
-        """Return the first element along a path of tags below this one, None if there is none."""
+        """Return the first element along a path of tags below this one; None if there is none."""
         element: Optional[Element] = self
         for tag in path:
             element = next(element.children(tag), None) if element else None
         return element
 
     def required(self, tag: str) -> "Element":
-        """Return the first child with a tag. Raises WorldError if there is none."""
+        """Return the first child with a tag.
+
+        Raises:
+            WorldError: There is none.
+        """
         element = self.child(tag)
         if element is None:
             raise self.error(f"<{tag}> is missing")
@@ -79,7 +85,7 @@ class Element:
         return (self.xml.text or "").strip()
 
     def numbers(self, count: int) -> List[float]:
-        """Return the text as exactly ``count`` finite numbers. Raises WorldError."""
+        """Return the text as exactly ``count`` finite numbers."""
         words = self.text.split()
         try:
             values = [float(word) for word in words]
@@ -90,19 +96,27 @@ class Element:
         return values
 
     def lengths(self, count: int) -> Tuple[float, ...]:
-        """Return the text as ``count`` positive numbers. Raises WorldError."""
+        """Return the text as ``count`` positive numbers."""
         return self._positive(self.numbers(count), "", self.text)
 
     def sizes(self, count: int) -> Tuple[float, ...]:
-        """Return the text as ``count`` lengths of a shape, which may be 0 as in Gazebo. Raises WorldError."""
+        """Return the text as ``count`` lengths of a shape, which may be 0 as in Gazebo."""
         return self._positive([value or THINNEST for value in self.numbers(count)], "", self.text)
 
     def attribute_numbers(
         self, name: str, count: int, default: Optional[Sequence[float]] = None
     ) -> Tuple[float, ...]:
-        """Return an attribute as exactly ``count`` finite numbers; without a ``default`` it is required.
+        """Return an attribute as finite numbers.
 
-        Commas between the numbers are accepted, as by Kinetic's urdfdom. Raises WorldError.
+        Commas between the numbers are accepted, as by Kinetic's urdfdom.
+
+        Args:
+            name: Name of the attribute.
+            count: Exact number of values.
+            default: Values of a missing attribute; None if it is required.
+
+        Raises:
+            WorldError: It is missing or not ``count`` finite numbers.
         """
         text = self.xml.get(name)
         if text is None and default is not None:
@@ -116,7 +130,15 @@ class Element:
         return values
 
     def attribute_sizes(self, name: str, count: int) -> Tuple[float, ...]:
-        """Return an attribute as ``count`` lengths of a shape. Raises WorldError."""
+        """Return an attribute as lengths of a shape, which may be 0 as in Gazebo.
+
+        Args:
+            name: Name of the attribute.
+            count: Exact number of values.
+
+        Raises:
+            WorldError: It is missing, or not ``count`` numbers of at least 0.
+        """
         values = [value or THINNEST for value in self.attribute_numbers(name, count)]
         return self._positive(values, f"{name} ", self.attribute(name))
 
@@ -133,7 +155,11 @@ class Element:
         return element is not None and element.text.lower() in ("1", "true")
 
     def raw_pose(self) -> Optional[np.ndarray]:
-        """Return the pose (4, 4) in this element's <pose>, whatever its frame; None if there is none."""
+        """Return the pose (4, 4) of this element's <pose>, in the frame that the <pose> names.
+
+        Returns:
+            The pose; None if there is no <pose>.
+        """
         element = self.child("pose")
         if element is None or not element.text:
             return None
@@ -143,12 +169,22 @@ class Element:
         return pose3(*values)
 
     def number(self, *path: str, default: float) -> float:
-        """Return the number along a path of tags, by default ``default``."""
+        """Return a number.
+
+        Args:
+            path: Tags from this element to the one with the number.
+            default: The number if there is no such element.
+        """
         element = self.child(*path)
         return element.numbers(1)[0] if element is not None else default
 
     def bound(self, *path: str, default: float) -> float:
-        """Return a limit along a path of tags; a number that is too large for a limit becomes infinite."""
+        """Return a limit; a number that is too large for a limit becomes infinite.
+
+        Args:
+            path: Tags from this element to the one with the number.
+            default: The limit if there is no such element.
+        """
         element = self.child(*path)
         try:
             value = float(element.text) if element is not None else default
@@ -159,7 +195,13 @@ class Element:
         return value if abs(value) < UNLIMITED else math.copysign(math.inf, value)
 
     def count(self, *path: str, most: int, default: int) -> int:
-        """Return the integer from 1 to ``most`` along a path of tags, by default ``default``."""
+        """Return an integer from 1 to a maximum.
+
+        Args:
+            path: Tags from this element to the one with the number.
+            most: Largest valid number.
+            default: The number if there is no such element.
+        """
         element = self.child(*path)
         if element is None:
             return default
@@ -170,7 +212,11 @@ class Element:
 
 
 def parse(path: Path) -> Element:
-    """Return the root element of an SDF file. Raises WorldError."""
+    """Return the root element of an SDF file.
+
+    Raises:
+        WorldError: The file cannot be read or is not SDF.
+    """
     try:
         return parse_text(read_bytes(path), str(path))
     except OSError as error:
@@ -178,7 +224,16 @@ def parse(path: Path) -> Element:
 
 
 def parse_text(text, file: str, roots: Sequence[str] = ("sdf", "gazebo")) -> Element:
-    """Return the root element, one of ``roots``, of XML text. Raises WorldError naming ``file``."""
+    """Return the root element of an XML text.
+
+    Args:
+        text: The XML, str or bytes.
+        file: Name of the text in errors.
+        roots: Valid tags of the root.
+
+    Raises:
+        WorldError: The text is not well-formed, or has another root.
+    """
     try:
         root = _root_of(text)
     except DefusedXmlException as error:

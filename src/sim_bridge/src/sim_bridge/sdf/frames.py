@@ -28,19 +28,35 @@ class SdfFrames:
         """Declare a frame.
 
         Args:
-            name: Its name.
-            element: Holds its <pose>.
+            name: Name of the frame.
+            element: Element with its <pose>.
             parent: Frame of the pose if the element names none.
             inside: Pose (4, 4), in the declared frame, of the frame that <pose> places.
         """
         self._declared[name] = (element, parent, inverse(inside))
 
     def pose_of(self, element: Element, parent: str = "") -> np.ndarray:
-        """Return the pose (4, 4) of an element in the root. Raises WorldError for an unknown frame."""
+        """Return the pose (4, 4) of an element in the root.
+
+        Args:
+            element: Element with a <pose>.
+            parent: Frame of the pose if the element names none.
+
+        Raises:
+            WorldError: A frame is unknown or depends on itself.
+        """
         return self._placed(element, parent, set())
 
     def frame(self, name: str, referrer: Element) -> np.ndarray:
-        """Return the pose (4, 4) of a frame in the root. Raises WorldError naming ``referrer``."""
+        """Return the pose (4, 4) of a frame in the root.
+
+        Args:
+            name: Name of the frame; ``nested::frame`` for one of a nested model.
+            referrer: Element that refers to the frame, for errors.
+
+        Raises:
+            WorldError: The frame is unknown or depends on itself.
+        """
         return self._frame(name, referrer, set())
 
     def _frame(self, name: str, referrer: Element, open_names: Set[str]) -> np.ndarray:

@@ -47,7 +47,11 @@ def has_model(path: Path) -> bool:
 
 
 def model_file(folder: Path) -> Path:
-    """Return the SDF file of the newest version in a model folder's ``model.config``. Raises WorldError."""
+    """Return the SDF file of the newest version in a model folder's ``model.config``.
+
+    Raises:
+        WorldError: ``model.config`` cannot be read or names no SDF file.
+    """
     if folder.is_file():
         return folder
     config_path = folder / "model.config"

@@ -12,7 +12,11 @@ DEFAULT_MASS = 1.0
 
 
 def read_mass(link: Element) -> float:
-    """Return the mass of a link [kg]. Raises WorldError."""
+    """Return the mass of a link [kg].
+
+    Raises:
+        WorldError: It is not a positive number.
+    """
     mass = link.child("inertial", "mass")
     return mass.lengths(1)[0] if mass is not None else DEFAULT_MASS
 
@@ -21,6 +25,10 @@ def read_inertia(link: Element, warnings: SkippedElements) -> Inertia:
     """Return the centre of mass and the principal moments of a link.
 
     Moments that are not positive, as in many worlds for links that never move, are ignored with a warning.
+
+    Args:
+        link: The <link>.
+        warnings: Receives the warning.
     """
     inertial = link.child("inertial")
     if inertial is None:

@@ -26,9 +26,9 @@ class SdfModel:
     """A <model>, or the model that an <include> names.
 
     Attributes:
-        name: Its name.
+        name: Name in its parent.
         element: The <model> element.
-        placed_by: The element with its pose: the include if that has one.
+        placed_by: The element with its pose: the <include> if that has one.
         folder: Folder to which relative paths in it refer.
         is_static: Whether it is static.
         nested: Models nested in it.
@@ -97,7 +97,14 @@ class ModelReader:
     def models_in(
         self, parent: Element, folder: Path, static: bool = False, depth: int = 0
     ) -> Iterator[SdfModel]:
-        """Yield the models in a <world>, or in a <model>, which are ``static`` if that is."""
+        """Yield the models below an element.
+
+        Args:
+            parent: A <world> or <model>.
+            folder: Folder to which relative paths refer.
+            static: Whether the parent is static; its models are then static, too.
+            depth: Number of includes that the parent is nested in.
+        """
         for element in parent.children("model"):
             yield self.model(element, element, folder, element.name, static, depth)
         for include in parent.children("include"):
@@ -114,7 +121,16 @@ class ModelReader:
         static: bool = False,
         depth: int = 0,
     ) -> SdfModel:
-        """Read a <model> with its nested models."""
+        """Read a <model> with its nested models.
+
+        Args:
+            element: The <model>.
+            placed_by: The element with its pose: the <include> if that has one.
+            folder: Folder to which relative paths refer.
+            name: Name in its parent.
+            static: Whether the parent is static.
+            depth: Number of includes that it is nested in.
+        """
         static = static or element.flag("static")
         model = SdfModel(name, element, placed_by, folder, static)
         if not model.is_driven:
@@ -126,9 +142,18 @@ class ModelReader:
     def included(
         self, include: Element, folder: Path, static: bool = False, depth: int = 0
     ) -> Optional[SdfModel]:
-        """Read the model that an <include> names, None if it is missing.
+        """Read the model that an <include> names; None if it is missing.
 
         The <name>, <pose> and <static> of the include take precedence.
+
+        Args:
+            include: The <include>.
+            folder: Folder to which relative paths refer.
+            static: Whether the parent is static.
+            depth: Number of includes that it is nested in.
+
+        Raises:
+            WorldError: The model includes itself, or its file cannot be read.
         """
         if depth >= MAX_INCLUDE_DEPTH:
             raise include.error("includes itself")
@@ -164,7 +189,11 @@ class ModelReader:
 
 
 def built_in(uri: str) -> str:
-    """Return the name of a model that may be built in: of ``model://ground_plane``, or a Fuel URI."""
+    """Return the name of a model that may be built in; empty for other URIs.
+
+    Args:
+        uri: ``model://ground_plane``, for example, or the URI of a model of Gazebo Fuel.
+    """
     scheme, _, path = uri.partition("://")
     if scheme == "model":
         return path.strip("/")

@@ -1,4 +1,7 @@
-"""Optional parameters of plugins: the child element's value, or a default."""
+"""Optional parameters of plugins: the value of a child element, or a default.
+
+Each function takes the parent element, the child's tag, and the value that a missing child has.
+"""
 
 from sim_bridge.sdf.element import Element
 
@@ -10,13 +13,21 @@ def text(element: Element, tag: str, default: str) -> str:
 
 
 def number(element: Element, tag: str, default: float) -> float:
-    """Return a number. Raises WorldError if the text is not one."""
+    """Return a number.
+
+    Raises:
+        WorldError: The text is not a finite number.
+    """
     child = element.child(tag)
     return child.numbers(1)[0] if child is not None else default
 
 
 def length(element: Element, tag: str, default: float) -> float:
-    """Return a positive number. Raises WorldError if the text is not one."""
+    """Return a positive number.
+
+    Raises:
+        WorldError: The text is not a positive number.
+    """
     child = element.child(tag)
     return child.lengths(1)[0] if child is not None else default
 

@@ -32,7 +32,16 @@ class SkippedElements:
         self._lines[key] = (first, count + 1)
 
     def missing(self, element: Element, what: str, consequence: str = "ignored") -> None:
-        """Warn that a file is missing. Raises WorldError if ``strict``."""
+        """Warn that a file is missing.
+
+        Args:
+            element: Element that refers to the file.
+            what: Which file is missing; warnings with the same text are merged.
+            consequence: What is done instead.
+
+        Raises:
+            WorldError: Missing files are errors (``strict``).
+        """
         if self._strict:
             raise element.error(what)
         self.skip(element, f"{what}, {consequence}", kind=what)

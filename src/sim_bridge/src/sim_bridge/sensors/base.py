@@ -1,9 +1,9 @@
 """Contract of a sensor: when it measures, in which frame, what, and with which errors.
 
-A robot's description holds a *spec*, the sensor's settings (``LaserProfile``). When the robot is put into a
-scene, ``spec.build(mounting)`` makes the sensor with its noise and random generator. From then on
+A robot's description has a *spec* of each sensor, its settings (such as ``LaserProfile``). When the robot is
+put into a scene, ``spec.build(mounting)`` makes the sensor with its noise and random generator. From then on
 ``schedule`` states after which physics steps it is due; each time it is due and enabled, ``measure(context)``
-is called once. A wrapper that meets the contract can stand in for a sensor: see SensorWrapper.
+is called once. A wrapper that meets the contract can replace a sensor: see SensorWrapper.
 """
 
 from dataclasses import dataclass
@@ -40,11 +40,11 @@ class Schedule(NamedTuple):
 
 
 class Reading(NamedTuple):
-    """What a sensor measured.
+    """A measurement with its time.
 
     Attributes:
         stamp: Time of the measurement [simulated s].
-        value: The sensor's type of measurement, such as a Scan.
+        value: The measurement, of the sensor's type, such as a Scan.
     """
 
     stamp: float
@@ -52,7 +52,7 @@ class Reading(NamedTuple):
 
 
 class SensorContext(Protocol):
-    """What a sensor can measure of its robot and the world at the end of a physics step."""
+    """State of a robot and of the world around it at the end of a physics step, as sensors measure it."""
 
     @property
     def stamp(self) -> float:
@@ -60,7 +60,7 @@ class SensorContext(Protocol):
 
     @property
     def base(self) -> KinematicState:
-        """KinematicState of the robot's base frame in the world."""
+        """Pose and velocity of the robot's base frame in the world."""
 
     @property
     def twist(self) -> Twist2:
@@ -76,23 +76,34 @@ class SensorContext(Protocol):
 
     @property
     def gravity(self) -> float:
-        """Acceleration downwards [m/s^2]."""
+        """Downward acceleration [m/s^2]."""
 
     def floors_below(self, points: Sequence[Sequence[float]]) -> List[float]:
-        """Return the height of the surface below each point of the world [m], -inf where there is none."""
-
-    def section(self, height: float) -> Tuple[np.ndarray, np.ndarray]:
-        """Return the horizontal section of everything but the robot.
+        """Return the height of the floor below each of several points.
 
         Args:
-            height: Above the world's origin [m].
+            points: Points (N, 3) in the world [m].
 
         Returns:
-            Sides (N, 4) as x, y, x, y in the world [m], and their laser retro (N,).
+            The heights (N,) [m]; -inf where there is no floor.
+        """
+
+    def section(self, height: float) -> Tuple[np.ndarray, np.ndarray]:
+        """Return the horizontal cross-section of all but the robot.
+
+        Args:
+            height: Height above the world's origin [m].
+
+        Returns:
+            Segments (N, 4) as x, y, x, y in the world [m], and the laser_retro (N,) of each.
         """
 
     def triangles(self) -> Tuple[np.ndarray, np.ndarray]:
-        """Return triangles (T, 3, 3) of all but the robot, in the world [m], and shades (T, 3), uint8."""
+        """Return the surfaces of all but the robot.
+
+        Returns:
+            Triangles (T, 3, 3) in the world [m], and their shaded colours (T, 3), uint8.
+        """
 
 
 class Sensor(Protocol[Measurement]):
@@ -100,7 +111,7 @@ class Sensor(Protocol[Measurement]):
 
     @property
     def name(self) -> str:
-        """Key of its readings in an observation."""
+        """Key of its readings in ``StepResult.readings``."""
 
     @property
     def frame(self) -> str:
@@ -108,17 +119,32 @@ class Sensor(Protocol[Measurement]):
 
     @property
     def on_demand(self) -> bool:
-        """Whether it measures only while it is enabled, because a measurement takes long."""
+        """Whether it measures only while it is enabled, because a measurement is expensive."""
 
     def schedule(self, settings: SimulationSettings) -> Schedule:
-        """Return when it measures at these rates."""
+        """Return when it measures.
+
+        Args:
+            settings: Rates of the simulation.
+        """
 
     def measure(self, context: SensorContext) -> Optional[Measurement]:
-        """Measure; None for no reading."""
+        """Measure.
+
+        Args:
+            context: State of the robot and of the world.
+
+        Returns:
+            The measurement; None for no reading.
+        """
 
 
 class SensorWrapper(Generic[Value]):
-    """Passes every call on to a sensor; a subclass overrides what it changes."""
+    """Forwards every call to a sensor; a subclass overrides what it changes.
+
+    Args:
+        sensor: The wrapped sensor.
+    """
 
     def __init__(self, sensor: Sensor[Value]):
         self._sensor = sensor
@@ -147,11 +173,11 @@ class Mounting:
     """Where and how a sensor is mounted.
 
     Attributes:
-        base_in_space: Initial pose of the robot in the world, (4, 4).
+        base_in_space: Start pose (4, 4) of the robot's base in the world.
         settings: Rates and noise.
         seed: Seed of the simulation.
-        robot: Number of the robot in its scene.
-        number: How many sensors of the same kind the robot has before this one.
+        robot: Number of the robot in its scene, from 0.
+        number: Number of sensors of the same kind that the robot has before this one.
     """
 
     base_in_space: np.ndarray
@@ -164,8 +190,8 @@ class Mounting:
         """Return the sensor's random generator.
 
         Args:
-            stream: Number of the kind of sensor, a hundred apart from others. Taken are 0 (odometry), 1
-                (range finders), 100 (cameras) and 200 (inertial sensors).
+            stream: Number of the kind of sensor, at least 100 from the others. In use are 0 (odometry),
+                1 (range finders), 100 (cameras) and 200 (inertial sensors).
         """
         robot = [] if self.robot == 0 and stream < FIRST_OTHER_STREAM else [self.robot]
         return np.random.default_rng([self.seed, *robot, stream + self.number])
@@ -175,10 +201,20 @@ class SensorSpec(Protocol):
     """Settings of a sensor in a robot's description."""
 
     def build(self, mounting: Mounting) -> Sensor[Any]:
-        """Make the sensor."""
+        """Make the sensor.
+
+        Args:
+            mounting: Start pose, settings and seed.
+        """
 
 
 def every(rate: Optional[float], settings: SimulationSettings) -> Schedule:
-    """Return the schedule of a rate [Hz], rounded to whole odometry periods; None for each period."""
+    """Return the schedule of a rate.
+
+    Args:
+        rate: Rate [Hz], rounded so that the period is a whole number of odometry periods; None for that of
+            odometry.
+        settings: Rates of the simulation.
+    """
     periods = 1 if rate is None else max(round(settings.odometry_rate / rate), 1)
     return Schedule(periods * (settings.physics_rate // settings.odometry_rate))

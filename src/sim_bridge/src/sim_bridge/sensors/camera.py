@@ -30,15 +30,15 @@ WIDEST = 3.0
 
 @dataclass(frozen=True)
 class CameraSettings:
-    """Settings of a camera.
+    """Lens and noise of a camera.
 
     Attributes:
-        width: Columns.
-        height: Rows.
-        horizontal_fov: Field of view [rad].
-        near: Near clip plane [m].
-        far: Far clip plane [m].
-        noise: Standard deviation of colours, of 0 to 1.
+        width: Width of the image [pixels].
+        height: Height of the image [pixels].
+        horizontal_fov: Horizontal field of view [rad].
+        near: Nearest visible depth [m].
+        far: Farthest visible depth [m].
+        noise: Standard deviation of colours, where 1 is full intensity.
     """
 
     width: int = 640
@@ -71,11 +71,11 @@ class CameraSettings:
 
 @dataclass(frozen=True)
 class DepthCameraSettings(CameraSettings):
-    """Settings of a depth camera.
+    """Lens and noise of a depth camera.
 
     Attributes:
-        min_depth: Depths below are NaN (REP 118) [m].
-        max_depth: Depths above are NaN [m].
+        min_depth: Smaller depths are NaN (REP 118) [m].
+        max_depth: Larger depths are NaN [m].
         depth_noise: Standard deviation at 1 m [m]; it grows with the square of the depth, as of a Kinect
             (Khoshelham and Elberink, Sensors 12, 2012).
     """
@@ -97,11 +97,11 @@ class DepthCameraSettings(CameraSettings):
 
 @dataclass(frozen=True, eq=False)
 class CameraReading:
-    """What a camera measures.
+    """Images of a camera.
 
     Attributes:
-        rgb: (H, W, 3), uint8.
-        depth: (H, W), float32, along the optical axis [m].
+        rgb: Colours (H, W, 3), uint8.
+        depth: Depth along the optical axis (H, W), float32 [m].
     """
 
     rgb: np.ndarray
@@ -113,15 +113,15 @@ class CameraProfile:
     """A camera of a robot's description.
 
     Attributes:
-        frame: Its optical frame.
-        pose_in_base: (4, 4); the camera faces along the x axis.
+        frame: Optical frame of its images.
+        pose_in_base: Pose (4, 4) in the base frame; the camera faces along its x axis.
         settings: Lens and noise.
-        rate: [Hz].
-        image_topic: Of colour images.
-        info_topic: Of their camera info.
-        depth_topic: Of depth images; empty for none, as the following.
-        depth_info_topic: Of their camera info.
-        points_topic: Of point clouds.
+        rate: Rate of the images [Hz].
+        image_topic: Topic of colour images.
+        info_topic: Topic of their camera info.
+        depth_topic: Topic of depth images; empty for none.
+        depth_info_topic: Topic of the camera info of depth images; empty for none.
+        points_topic: Topic of point clouds; empty for none.
     """
 
     frame: str
@@ -143,7 +143,13 @@ class CameraProfile:
 
 
 class Camera:
-    """Renders images of the world's triangles."""
+    """Renders images of the world's triangles.
+
+    Args:
+        settings: Lens and noise.
+        rng: Random generator of the noise.
+        profile: Frame, pose, rate and topics.
+    """
 
     on_demand = True
 
@@ -163,12 +169,15 @@ class Camera:
     def render(
         self, triangles_xyz: np.ndarray, shades: np.ndarray, camera_in_world: np.ndarray
     ) -> CameraReading:
-        """Render triangles (see sim_bridge.views.drawing).
+        """Render triangles.
 
         Args:
-            triangles_xyz: (T, 3, 3), in the world [m].
-            shades: (T, 3), uint8.
-            camera_in_world: (4, 4); the camera faces along its x axis.
+            triangles_xyz: Triangles (T, 3, 3) in the world [m].
+            shades: Their shaded colours (T, 3), uint8.
+            camera_in_world: Pose (4, 4) of the camera, which faces along its x axis.
+
+        Returns:
+            The images, with noise.
         """
         world_in_optical = inverse(camera_in_world @ OPTICAL_IN_CAMERA)
         in_optical = triangles_xyz @ world_in_optical[:3, :3].T + world_in_optical[:3, 3]
@@ -192,7 +201,15 @@ class Camera:
 
 
 def depth_to_points(depth: np.ndarray, settings: CameraSettings) -> np.ndarray:
-    """Return the points of a depth image (H, W) in the optical frame, (H, W, 3), float32 [m]."""
+    """Return the point cloud of a depth image.
+
+    Args:
+        depth: Depth image (H, W) [m].
+        settings: Lens of the camera.
+
+    Returns:
+        Points (H, W, 3) in the optical frame, float32 [m].
+    """
     (centre_x, centre_y), scale = settings.centre, settings.focal_length
     columns = (np.arange(settings.width, dtype=np.float32) - np.float32(centre_x)) / np.float32(scale)
     rows = (np.arange(settings.height, dtype=np.float32) - np.float32(centre_y)) / np.float32(scale)
@@ -200,7 +217,11 @@ def depth_to_points(depth: np.ndarray, settings: CameraSettings) -> np.ndarray:
 
 
 def read_camera(element: SensorElement) -> CameraProfile:
-    """Read gazebo_ros_camera. Raises WorldError."""
+    """Read a camera of Gazebo (gazebo_ros_camera).
+
+    Raises:
+        WorldError: A value is not valid.
+    """
     values, topics = _values_of(element)
     try:
         settings = CameraSettings(**values)
@@ -210,7 +231,11 @@ def read_camera(element: SensorElement) -> CameraProfile:
 
 
 def read_depth_camera(element: SensorElement) -> CameraProfile:
-    """Read gazebo_ros_openni_kinect. Raises WorldError."""
+    """Read a depth camera of Gazebo (gazebo_ros_openni_kinect).
+
+    Raises:
+        WorldError: A value is not valid.
+    """
     plugin, prefix = element.plugin, _prefix(element)
     values, topics = _values_of(element)
     try:

@@ -14,7 +14,12 @@ Wheels = Tuple[Tuple[float, ...], Tuple[float, ...]]
 
 
 class RobotSensorContext:
-    """The SensorContext of a vehicle; what several sensors ask for is queried from physics once a step."""
+    """The SensorContext of a vehicle, with a cache of what several sensors measure in one step.
+
+    Args:
+        vehicle: The robot.
+        view: The sensors' view of the scene.
+    """
 
     def __init__(self, vehicle: Vehicle, view: SceneView):
         self.stamp = 0.0
@@ -35,7 +40,11 @@ class RobotSensorContext:
         self._bumps.clear()
 
     def refresh(self, stamp: float) -> None:
-        """Discard cached state, at the end of a physics step in which a sensor is due, at ``stamp`` [s]."""
+        """Discard the cached state, at the end of a physics step in which a sensor is due.
+
+        Args:
+            stamp: Simulated time [s].
+        """
         self.stamp = stamp
         self._base = self._twist = self._wheels = None
 

@@ -37,12 +37,12 @@ class ImuSettings:
 
 @dataclass(frozen=True, eq=False)
 class ImuReading:
-    """What an IMU measures.
+    """Measurement of an IMU.
 
     Attributes:
-        orientation: Rotation of the sensor in the world, (4, 4).
-        angular_velocity: (3,), along its axes [rad/s].
-        acceleration: (3,), along its axes [m/s^2]; +g upwards at rest (REP 145).
+        orientation: Orientation of the sensor in the world, as a pose (4, 4) without position.
+        angular_velocity: Angular velocity (3,) along the sensor's axes [rad/s].
+        acceleration: Acceleration (3,) along the sensor's axes [m/s^2]; +g upwards at rest (REP 145).
     """
 
     orientation: np.ndarray
@@ -55,14 +55,15 @@ class ImuProfile:
     """Settings of an IMU.
 
     Attributes:
-        topic: Where it publishes.
-        frame: Of its measurements.
-        pose_in_base: (4, 4).
-        rate: [Hz]; None for that of odometry.
-        noise: Standard deviation of all measurements, in SI units; None for that of the simulation.
-        orientation_variances: Published variances about its axes, (3,); 0 is unknown (sensor_msgs/Imu).
-        angular_velocity_variances: The same of the angular velocity.
-        acceleration_variances: The same of the acceleration.
+        topic: Topic of its messages.
+        frame: Frame of its measurements.
+        pose_in_base: Pose (4, 4) in the base frame.
+        rate: Rate of the messages [Hz]; None for that of odometry.
+        noise: Standard deviation of all measurements [rad/s and m/s^2]; None for that of the simulation.
+        orientation_variances: Published variances (3,) about the sensor's axes [rad^2]; 0 is unknown
+            (sensor_msgs/Imu).
+        angular_velocity_variances: Published variances (3,) of the angular velocity [rad^2/s^2].
+        acceleration_variances: Published variances (3,) of the acceleration [m^2/s^4].
     """
 
     topic: str
@@ -75,7 +76,7 @@ class ImuProfile:
     acceleration_variances: Tuple[float, ...] = (0.0, 0.0, 0.0)
 
     def build(self, mounting: Mounting) -> "Imu":
-        """Make the sensor; the standard deviation of white noise grows with the root of the rate."""
+        """Make the sensor; the standard deviation of its white noise grows with the root of the rate."""
         settings = mounting.settings
         rate = self.rate or settings.odometry_rate
         gyro_noise, acceleration_noise = settings.gyro_noise * math.sqrt(rate), settings.acceleration_noise
@@ -86,7 +87,13 @@ class ImuProfile:
 
 
 class Imu:
-    """Measures angular velocity, and acceleration as the change of velocity between two readings."""
+    """Measures angular velocity, and acceleration as the change of velocity between two readings.
+
+    Args:
+        settings: Standard deviations of the errors.
+        rng: Random generator of the errors.
+        profile: Frame, pose, rate and topic.
+    """
 
     on_demand = True
 
@@ -109,12 +116,12 @@ class Imu:
         return self.read(sensor, self._seconds, context.gravity)
 
     def read(self, sensor: KinematicState, seconds: float, gravity: float) -> ImuReading:
-        """Measure.
+        """Return a measurement with errors.
 
         Args:
-            sensor: State of the sensor in the world.
+            sensor: Pose and velocity of the sensor in the world.
             seconds: Time since the last reading [s].
-            gravity: Acceleration downwards [m/s^2].
+            gravity: Downward acceleration [m/s^2].
         """
         before = sensor.linear if self._velocity is None else self._velocity
         self._velocity = sensor.linear
@@ -133,7 +140,11 @@ class Imu:
 
 
 def read_imu(element: SensorElement) -> ImuProfile:
-    """Read gazebo_ros_imu or hector_gazebo_ros_imu, in a <sensor> or below the model. Raises WorldError."""
+    """Read an IMU of Gazebo (gazebo_ros_imu or hector_gazebo_ros_imu), in a <sensor> or below the model.
+
+    Raises:
+        WorldError: A value is not valid.
+    """
     plugin = element.plugin
     noise = plugin.child("gaussianNoise")
     deviation = noise.numbers(1)[0] if noise is not None else None

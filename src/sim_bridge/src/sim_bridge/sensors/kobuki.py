@@ -30,7 +30,7 @@ WHEEL_DROP = 0.02
 
 @dataclass(frozen=True)
 class KobukiReading:
-    """State of a Kobuki's sensors; sectors are left 0, centre 1, right 2.
+    """State of a Kobuki's sensors; sectors are left 0, centre 1, right 2 (kobuki_msgs).
 
     Attributes:
         bumpers: Pressed sectors.
@@ -48,9 +48,9 @@ class KobukiProfile:
     """Settings of a Kobuki's sensors.
 
     Attributes:
-        hubs_xyz: (2, 3), hubs of the left and right wheel in the base frame [m].
-        wheel_radius: [m].
-        cliff_threshold: Range to the floor from which there is a cliff [m].
+        hubs_xyz: Hubs (2, 3) of the left and right wheel in the base frame [m].
+        wheel_radius: Radius of the wheels [m].
+        cliff_threshold: Distance to the floor from which there is a cliff [m].
     """
 
     hubs_xyz: np.ndarray
@@ -91,7 +91,11 @@ class KobukiSensors:
 
 
 def pressed(contacts_xyz: np.ndarray) -> FrozenSet[int]:
-    """Return the pressed sectors; ``contacts_xyz``: (N, 3), contacts of the robot in its base frame [m]."""
+    """Return the pressed sectors of the bumper.
+
+    Args:
+        contacts_xyz: Contacts (N, 3) of the robot in its base frame [m].
+    """
     x, y, z = np.asarray(contacts_xyz, dtype=float).reshape(-1, 3).T
     bearings = np.arctan2(y, x)[(z >= LOWEST) & (z <= HIGHEST)]
     return frozenset(

@@ -24,19 +24,19 @@ class LaserProfile:
     """Settings of a planar range finder.
 
     Attributes:
-        frame: Of its scans.
-        topic: Where it publishes.
-        pose_in_base: (4, 4).
+        frame: Frame of its scans.
+        topic: Topic of its scans.
+        pose_in_base: Pose (4, 4) in the base frame.
         beams: Number of beams.
-        angle_min: Bearing of the first beam [rad].
-        angle_increment: Between two beams [rad].
+        angle_min: Bearing of the first beam in ``frame`` [rad].
+        angle_increment: Angle between two beams [rad].
         range_min: Published range_min [m].
         range_max: Published range_max [m].
         sight: Range within which obstacles are measured [m].
-        no_return: Range of a beam that hits nothing within ``sight`` (REP 117).
-        too_near: Range of a beam that hits an obstacle nearer than ``range_min`` (REP 117).
+        no_return: Reading of a beam that hits nothing within ``sight`` (REP 117) [m].
+        too_near: Reading of a beam that hits an obstacle nearer than ``range_min`` (REP 117) [m].
         scan_time: Published scan_time [s].
-        rate: [Hz]; None for that of the simulation.
+        rate: Rate of the scans [Hz]; None for that of the simulation.
         noise: Standard deviation of a range [m]; None for that of the simulation.
     """
 
@@ -63,12 +63,12 @@ class LaserProfile:
 
 
 class Lidar:
-    """Measures ranges in a horizontal section of the world.
+    """Measures ranges in a horizontal cross-section of the world.
 
     Its beams stay horizontal: on a floor the robot tilts by less than a fifth of a degree.
 
     Args:
-        profile: Settings.
+        profile: Geometry and limits.
         noise: Errors of ranges.
         rng: Random generator of the noise.
         base_height: Height of the base frame above the world's origin [m].
@@ -100,9 +100,12 @@ class Lidar:
 
         Args:
             stamp: Time of the scan [simulated s].
-            segments: Sides of obstacles, (N, 4), as x, y, x, y in the world [m].
-            retros: Laser retro of the sides, (N,).
-            base_in_world: Pose of the robot.
+            segments: Sides of obstacles (N, 4) as x, y, x, y in the world [m].
+            retros: laser_retro (N,) of the sides.
+            base_in_world: Pose of the robot's base.
+
+        Returns:
+            The scan, with noise.
         """
         profile = self._profile
         laser = base_in_world @ self._laser_in_base
@@ -162,7 +165,11 @@ class Lidar:
 
 
 def read_laser(element: SensorElement) -> LaserProfile:
-    """Read gazebo_ros_laser. Raises WorldError."""
+    """Read a range finder of Gazebo (gazebo_ros_laser).
+
+    Raises:
+        WorldError: A value is not valid.
+    """
     sensor = element.sensor
     ray = sensor.child("ray") or sensor.required("lidar")
     horizontal = ray.required("scan").required("horizontal")

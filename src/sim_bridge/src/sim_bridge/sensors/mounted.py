@@ -9,7 +9,12 @@ from sim_bridge.sensors.base import Reading, Schedule, Sensor, SensorContext
 
 
 class MountedSensor:
-    """Keeps the schedule of a sensor."""
+    """Measures with a sensor on its schedule.
+
+    Args:
+        sensor: The sensor.
+        settings: Rates of the simulation.
+    """
 
     def __init__(self, sensor: Sensor[Any], settings: SimulationSettings):
         self._sensor = sensor
@@ -34,14 +39,14 @@ class MountedSensor:
         return math.gcd(math.gcd(self._schedule.interval, self._schedule.offset), self._schedule.delay)
 
     def end_step(self, step: int, context: SensorContext) -> int:
-        """Measure if it is due, and release readings whose delay is over.
+        """Measure if the sensor is due, and release readings whose delay is over.
 
         Args:
             step: Number of the physics step that has just ended.
-            context: State of the robot and the world.
+            context: State of the robot and of the world.
 
         Returns:
-            Number of the next step after which this has to be called.
+            Number of the next step after which this method has to be called.
         """
         interval, offset, delay = self._schedule
         since_due = (step - offset) % interval

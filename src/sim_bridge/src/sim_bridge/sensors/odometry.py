@@ -22,7 +22,7 @@ class Odometry:
     """An odometry estimate.
 
     Attributes:
-        base_in_odom: Pose.
+        base_in_odom: Pose of the base in the odometry frame.
         twist: Velocity in the base frame.
     """
 
@@ -35,9 +35,9 @@ class TrueMotion:
     """True motion of a robot in one period.
 
     Attributes:
-        base_in_world: Pose at its end.
-        twist: Velocity at its end, in the base frame.
-        wheel_angles: Of the driven wheels at its end, left ones first [rad].
+        base_in_world: Pose of the base at the end of the period.
+        twist: Velocity at the end, in the base frame.
+        wheel_angles: Angles of the driven wheels at the end, those on the left first [rad].
         seconds: Length of the period [s].
     """
 
@@ -54,7 +54,11 @@ class OdometryModel(Protocol):
         """Reset the pose to the origin."""
 
     def update(self, motion: TrueMotion) -> Odometry:
-        """Integrate the motion of one period, and return the estimate."""
+        """Integrate the motion of one period, and return the estimate.
+
+        Args:
+            motion: True motion, to which the model adds its errors.
+        """
 
 
 @dataclass(frozen=True)
@@ -64,11 +68,11 @@ class OdometryProfile:
     Attributes:
         source: ``gyro`` (distance from the wheels, heading from a gyro), ``encoder`` (both from the wheels)
             or ``world`` (the true pose in the world).
-        topic: Where it is published.
+        topic: Topic of its messages.
         frame: Parent frame.
         base_frame: Child frame.
-        sends_transform: Whether the transform is published, too.
-        rate: [Hz]; None for that of the simulation.
+        sends_transform: Whether the transform between them is published on /tf.
+        rate: Rate of the messages [Hz]; None for that of the simulation.
         variances: Published variances of x, y, z [m^2], roll, pitch and yaw [rad^2].
     """
 
@@ -81,14 +85,24 @@ class OdometryProfile:
     variances: Tuple[float, ...] = KOBUKI_VARIANCES
 
     def build(self, drive: DriveProfile, mounting: Mounting) -> OdometryModel:
-        """Make the odometry model of a robot with this drive."""
+        """Make the odometry model of a robot.
+
+        Args:
+            drive: Geometry of the wheels.
+            mounting: Start pose, noise and seed.
+        """
         if self.source == "world":
             return TrueOdometry()
         return DeadReckoning(drive, self.source == "gyro", mounting.settings, mounting.rng(STREAM))
 
 
 class Odometer:
-    """The odometry sensor of a robot; it measures once a period."""
+    """The odometry sensor of a robot, which measures in each odometry period.
+
+    Args:
+        profile: Frames and source.
+        model: Estimates the pose.
+    """
 
     name, on_demand = "odometry", False
 
@@ -110,7 +124,7 @@ class Odometer:
 
 
 class TrueOdometry:
-    """The true pose in the world, as of Gazebo's plugins with the source ``world``."""
+    """Odometry without drift: the true pose in the world, as Gazebo's plugins with the source ``world``."""
 
     def reset(self) -> None:
         """Do nothing: the world frame is fixed."""
@@ -122,10 +136,13 @@ class TrueOdometry:
 class DeadReckoning:
     """Dead reckoning: distance from the encoders, heading from them or, as on a Kobuki, from a gyro.
 
-    Errors of encoders: a scale for each side, drawn once; without a gyro one for both, because an
-    uncalibrated pair would not be used. Wheel slip: noise of the distance that grows with its root. Errors of
-    the gyro: scale and bias, drawn once, and white noise. In addition, the odometry noise of Probabilistic
-    Robotics (table 5.6), alpha 1 to 4.
+    Errors are those of:
+
+    * the encoders: a scale for each side, drawn once; without a gyro one for both sides, because an
+      uncalibrated pair would not be used;
+    * wheel slip: noise of the distance that grows with its square root;
+    * the gyro: scale and bias, drawn once, and white noise;
+    * the odometry motion model (Probabilistic Robotics, table 5.6): alpha1 to alpha4.
 
     Args:
         drive: Geometry of the wheels.

@@ -14,9 +14,9 @@ class TruthReading:
     """True state of a robot.
 
     Attributes:
-        base_in_world: Pose.
+        base_in_world: Pose of the base.
         twist: Velocity in the base frame.
-        tilt: Angle between the robot's axis and the vertical [rad].
+        tilt: Angle between the robot's z axis and the vertical [rad].
     """
 
     base_in_world: Pose2
@@ -26,11 +26,11 @@ class TruthReading:
 
 @dataclass(frozen=True)
 class WheelState:
-    """State of the driven wheels, left ones first.
+    """State of the driven wheels, those on the left first.
 
     Attributes:
-        angles: [rad].
-        speeds: [rad/s].
+        angles: Angles [rad].
+        speeds: Speeds [rad/s].
     """
 
     angles: Tuple[float, ...]

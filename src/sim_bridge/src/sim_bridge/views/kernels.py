@@ -14,7 +14,20 @@ def _is_out_of_range(a, b, max_range):
 
 @numba.njit(cache=True)
 def cast_rays(segments, x, y, first, increment, count, max_range):
-    """Cast beams at segments: each segment is intersected with the beams between its two ends."""
+    """Cast beams at segments: each segment is intersected with the beams between its two ends.
+
+    Args:
+        segments: Segments (N, 4) as x, y, x, y [m].
+        x: Position of the sensor [m].
+        y: Position of the sensor [m].
+        first: Direction of the first beam [rad].
+        increment: Angle between two beams [rad], positive.
+        count: Number of beams.
+        max_range: Largest range [m].
+
+    Returns:
+        Distances (count,) [m], infinite without a hit, and indices (count,) of the hit segments, else -1.
+    """
     turn = 2.0 * math.pi
     first = (first + math.pi) % turn - math.pi
     ranges, nearest = np.full(count, np.inf), np.full(count, -1)
@@ -67,7 +80,21 @@ def measure_ranges(
     max_range,
     farthest,
 ):
-    """Return the measured ranges, float32: with noise, limits and random failures."""
+    """Return the measured ranges (count,), float32: true ranges with noise, limits and random failures.
+
+    Args:
+        true_ranges: Distance (count,) along each beam, infinite without a hit [m].
+        sigma: Standard deviation of a range [m].
+        draws: Standard normal random numbers (count,).
+        chance: Uniform random numbers (count,), 0 to 1; empty for no failures.
+        dropouts: Fraction of the beams without a return.
+        max_readings: Fraction of the beams that read ``farthest``.
+        below_min: Reading of a beam with a range below ``nearest``.
+        no_return: Reading of a beam without a return.
+        nearest: Smallest range [m].
+        max_range: Largest range [m].
+        farthest: Reading of a failed beam [m].
+    """
     measured = np.empty(true_ranges.size, dtype=np.float32)
     for beam in range(true_ranges.size):
         value = true_ranges[beam] + sigma * draws[beam]
@@ -85,7 +112,20 @@ def measure_ranges(
 
 @numba.njit(cache=True)
 def rasterize(triangles, colours, scale, centre_x, centre_y, near, far, perspective, image, depth):
-    """Clip each triangle at the near plane and fill the remaining polygon as a fan."""
+    """Clip each triangle at the near plane and fill the remaining polygon as a fan.
+
+    Args:
+        triangles: Triangles (T, 3, 3) in the optical frame [m].
+        colours: Their colours (T, 3), uint8.
+        scale: Pixels per metre, at 1 m distance if ``perspective``.
+        centre_x: Column of the optical axis [pixels].
+        centre_y: Row of the optical axis [pixels].
+        near: Nearest visible depth [m].
+        far: Farthest visible depth [m].
+        perspective: Whether x and y are divided by z.
+        image: Image (H, W, 3), uint8, changed in place.
+        depth: Depth image (H, W), float32 [m], changed in place; pixels that are nearer are kept.
+    """
     corners = np.empty((4, 3))
     for t in range(triangles.shape[0]):
         count = 0

@@ -56,7 +56,12 @@ class RenderGeometry:
         self._place(body.name, body.is_static, (triangles, colours, emissive), body.pose_in_world)
 
     def move(self, name: str, pose: np.ndarray) -> None:
-        """Set the pose (4, 4) of a static body."""
+        """Move a static body; the poses of others are read each time.
+
+        Args:
+            name: Name of the body; others than static ones are ignored.
+            pose: Pose (4, 4) in the world.
+        """
         if name in self._static:
             drawn = self._static[name]
             self._place(name, True, drawn.appearance, pose)
@@ -70,11 +75,14 @@ class RenderGeometry:
     def triangles(
         self, pose_of: Callable[[str], np.ndarray], excluded_model: str = ""
     ) -> Tuple[np.ndarray, np.ndarray]:
-        """Return triangles (T, 3, 3) in the world and their shaded colours (T, 3), uint8.
+        """Return the triangles of all bodies at their present poses.
 
         Args:
             pose_of: Returns the present pose (4, 4) of a body.
             excluded_model: Model whose bodies are left out.
+
+        Returns:
+            Triangles (T, 3, 3) in the world [m], and their shaded colours (T, 3), uint8.
         """
         if self._all_static is None:
             static = self._static.values()

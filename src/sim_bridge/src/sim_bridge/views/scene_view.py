@@ -47,7 +47,12 @@ class SceneView:
             view.remove(name)
 
     def move(self, name: str, pose: np.ndarray) -> None:
-        """Set the pose (4, 4) of a body; those of moving bodies are read from the engine instead."""
+        """Move a static body; the poses of others are read from the engine.
+
+        Args:
+            name: Name of the body; others than static ones are ignored.
+            pose: Pose (4, 4) in the world.
+        """
         if name in self._bodies and self._bodies[name].is_static:
             self._bodies[name] = replace(self._bodies[name], pose_in_world=pose)
             for view in self._views():
@@ -59,14 +64,18 @@ class SceneView:
             section.update(self._pose_of)
 
     def remove_viewer(self, viewer: str) -> None:
-        """Remove a viewer."""
+        """Discard the cross-sections that were computed for a viewer."""
         self._sections = {key: section for key, section in self._sections.items() if key[0] != viewer}
 
     def section(self, viewer: str, height: float) -> Tuple[np.ndarray, np.ndarray]:
-        """Return the cross-section that a viewer sees at a height [m].
+        """Return the cross-section that a viewer measures.
+
+        Args:
+            viewer: Name of the viewer's model, which is left out.
+            height: Height above the world's origin [m].
 
         Returns:
-            Segments (N, 4) as x, y, x, y [m], and the laser_retro (N,) of each.
+            Segments (N, 4) as x, y, x, y in the world [m], and the laser_retro (N,) of each.
         """
         section = self._sections.get((viewer, height))
         if section is None:
@@ -77,7 +86,14 @@ class SceneView:
         return section.segments(self._pose_of), section.retros()
 
     def triangles(self, viewer: str = "") -> Tuple[np.ndarray, np.ndarray]:
-        """Return the triangles (T, 3, 3) that a camera sees, and their shaded colours (T, 3), uint8."""
+        """Return the surfaces that a camera can see.
+
+        Args:
+            viewer: Name of the viewer's model, which is left out; empty for none.
+
+        Returns:
+            Triangles (T, 3, 3) in the world [m], and their shaded colours (T, 3), uint8.
+        """
         if not self._render_geometry:
             self._render_geometry.append(RenderGeometry())
             for body in self._bodies.values():

@@ -24,7 +24,11 @@ class _Outline:
 
 
 class CrossSection:
-    """The cross-section of a scene at one height, updated as bodies move."""
+    """The cross-section of a scene at one height, updated as bodies move.
+
+    Args:
+        height: Height above the world's origin [m].
+    """
 
     def __init__(self, height: float):
         self._height = height
@@ -39,7 +43,12 @@ class CrossSection:
         self._place(body, body.pose_in_world)
 
     def move(self, name: str, pose: np.ndarray) -> None:
-        """Set the pose (4, 4) of a static body."""
+        """Move a static body; the poses of others are read each time.
+
+        Args:
+            name: Name of the body; others than static ones are ignored.
+            pose: Pose (4, 4) in the world.
+        """
         if name in self._static:
             self._place(self._static[name].body, pose)
 
@@ -50,7 +59,11 @@ class CrossSection:
         self._stacked = None
 
     def update(self, pose_of: Callable[[str], np.ndarray]) -> None:
-        """Recompute the outlines of moving bodies at their exact present poses."""
+        """Recompute the outlines of moving bodies at their exact present poses.
+
+        Args:
+            pose_of: Returns the present pose (4, 4) of a body.
+        """
         for name, outline in list(self._moving.items()):
             self._place(outline.body, pose_of(name))
 
@@ -103,7 +116,12 @@ class CrossSection:
 
 
 class _Stacked:
-    """Segments of all static and kinematic bodies in one array each; ``retros``: laser_retro of both."""
+    """Segments of all static and kinematic bodies, in one array for each of the two kinds.
+
+    Attributes:
+        static: Segments (N, 4) of static bodies as x, y, x, y in the world [m].
+        retros: laser_retro (N + M,) of the static and then of the kinematic segments.
+    """
 
     def __init__(self, static: Sequence[_Outline], kinematic: Sequence[_Outline]):
         self.static = np.vstack([np.empty((0, 4)), *(outline.segments for outline in static)])
@@ -143,7 +161,8 @@ def cast_beams(
 
     Args:
         segments: Segments (N, 4) as x, y, x, y [m].
-        x: Position of the sensor [m], as is ``y``.
+        x: Position of the sensor [m].
+        y: Position of the sensor [m].
         first: Direction of the first beam [rad].
         increment: Angle between two beams [rad], positive.
         count: Number of beams.

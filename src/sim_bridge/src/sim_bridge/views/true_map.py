@@ -72,7 +72,16 @@ def _occupied_cells(
 
 
 def outlines_of(world: World, bottom: float, top: float) -> List[np.ndarray]:
-    """Return the convex outlines (N, 2) of all solids that do not move, between two heights [m]."""
+    """Return convex outlines of all solids that do not move, cut between two heights.
+
+    Args:
+        world: The world.
+        bottom: Lower height [m].
+        top: Upper height [m].
+
+    Returns:
+        Corners (N, 2), in order, of each outline [m].
+    """
     return [
         outline
         for body in world.bodies

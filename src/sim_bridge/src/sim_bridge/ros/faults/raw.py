@@ -28,7 +28,11 @@ class RawMessage:
         return raw
 
     def decode(self) -> Any:
-        """Deserialize the message. Raises MessageError if its bytes are invalid."""
+        """Deserialize the message.
+
+        Raises:
+            MessageError: Its bytes are invalid.
+        """
         try:
             return self.kind().deserialize(self.data)
         except (genpy.DeserializationError, ValueError) as error:  # ValueError: an array is cut short

@@ -36,12 +36,20 @@ class ReceivedScan(Scan):
 
     @classmethod
     def from_msg(cls, message) -> "ReceivedScan":
-        """Convert a message; angles are in the laser's frame. Raises PlanarError if it is invalid."""
+        """Convert a message; angles are in the laser's frame.
+
+        Raises:
+            PlanarError: The message is invalid.
+        """
         values = vars(scan_from_msg(message, Pose2()))
         return cls(**{**values, "intensities": message.intensities, "message": message})
 
     def to_msg(self, changed: Scan) -> Any:
-        """Return the message to publish when faults made ``changed`` of this scan."""
+        """Return the message to publish.
+
+        Args:
+            changed: The scan that faults have returned for this one.
+        """
         source = _source(changed, self)
         message = copy.copy(source)
         message.header = _header(changed.stamp, source.header, self.message.header)
@@ -64,11 +72,19 @@ class ReceivedOdometry(Odometry):
 
     @classmethod
     def from_msg(cls, message) -> "ReceivedOdometry":
-        """Convert a message. Raises PlanarError if its pose or twist is invalid."""
+        """Convert a message.
+
+        Raises:
+            PlanarError: Its pose or twist is invalid.
+        """
         return cls(pose2_from_msg(message.pose.pose), twist2_from_msg(message.twist.twist), message)
 
     def to_msg(self, changed: Odometry) -> Any:
-        """Return the message to publish when faults made ``changed`` of this odometry."""
+        """Return the message to publish.
+
+        Args:
+            changed: The odometry that faults have returned for this one.
+        """
         message = copy.deepcopy(_source(changed, self))
         message.header = self.message.header
         _set_pose(message.pose.pose, changed.base_in_odom)
@@ -85,12 +101,20 @@ class ReceivedCommand(Twist2):
 
     @classmethod
     def from_msg(cls, message) -> "ReceivedCommand":
-        """Convert a message. Raises PlanarError if the velocity is invalid."""
+        """Convert a message.
+
+        Raises:
+            PlanarError: The velocity is invalid.
+        """
         twist = twist2_from_msg(message)
         return cls(twist.v, twist.omega, message)
 
     def to_msg(self, changed: Twist2) -> Any:
-        """Return the message to publish when faults made ``changed`` of this command."""
+        """Return the message to publish.
+
+        Args:
+            changed: The command that faults have returned for this one.
+        """
         message = copy.deepcopy(_source(changed, self))
         _set_twist(message, changed)
         return message

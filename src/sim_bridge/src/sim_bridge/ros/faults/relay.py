@@ -36,7 +36,7 @@ class RelayedTopic(NamedTuple):
     Attributes:
         topic: Name of the subscribed topic.
         method: Method of a fault that changes its messages.
-        value_type: What that method is given.
+        value_type: Type of the method's argument.
     """
 
     topic: str
@@ -115,7 +115,11 @@ class FaultRelay:
 
 
 def transform_of(odometry: Odometry) -> TransformStamped:
-    """Return the transform of an odometry message. Raises PlanarError if the message is invalid."""
+    """Return the transform of an odometry message.
+
+    Raises:
+        PlanarError: The message is invalid.
+    """
     parent, child = frame_name(odometry.header.frame_id), frame_name(odometry.child_frame_id)
     if not (parent and child and is_stamp(odometry.header.stamp)):
         raise MessageError("a frame is missing, or the stamp is invalid")

@@ -43,7 +43,12 @@ class FaultServer:
         advertise_add_fault(lambda *fault: calls.call(lambda: self._add(*fault)))
 
     def update(self, scene: Scene, observations: Mapping[str, StepResult]) -> None:
-        """Begin and end faults after a step; the environment changes around the first robot."""
+        """Begin and end faults after a step.
+
+        Args:
+            scene: The simulated world.
+            observations: Result of the step by robot; faults of the environment concern the first one.
+        """
         self._now = scene.stamp
         for name, observation in islice(observations.items(), 1):
             self._injector.update(self._now, FaultContext(scene, name, observation.base_in_world))

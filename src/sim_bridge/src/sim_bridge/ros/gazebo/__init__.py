@@ -18,7 +18,15 @@ __all__ = ["GazeboInterface"]
 
 
 class GazeboInterface:
-    """Services and topics of Gazebo; ``model_folders`` are searched for models that spawned ones include."""
+    """Services and topics of Gazebo.
+
+    Args:
+        scene: The simulated world.
+        robots: Steps the scene; spawned robots are added to it.
+        time_control: Pauses, steps and resets simulated time.
+        calls: Queue of the thread that owns the scene.
+        model_folders: Folders of the models that spawned ones include.
+    """
 
     def __init__(
         self, scene: Scene, robots: RobotManager, time_control: TimeControl, calls: CallQueue, model_folders

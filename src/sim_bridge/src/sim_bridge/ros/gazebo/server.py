@@ -20,18 +20,34 @@ SCOPE_HINT = "did you forget to scope the link by model name?"
 
 
 class GazeboServer:
-    """Handles service calls and messages between two steps of the simulation."""
+    """Handles service calls and messages between two steps of the simulation.
+
+    Args:
+        calls: Queue of the thread that owns the scene.
+    """
 
     def __init__(self, calls: CallQueue):
         self._calls = calls
 
     def serve(self, name: str, kind, answer: Callable) -> None:
-        """Advertise a service, below /gazebo unless its name starts with a slash."""
+        """Advertise a service that is handled between two steps.
+
+        Args:
+            name: Name of the service, below /gazebo unless it starts with a slash.
+            kind: Type of the service.
+            answer: Returns the response to a request.
+        """
         full_name = rospy.names.ns_join(NAMESPACE, name)
         rospy.Service(full_name, kind, lambda request: self.between_steps(lambda: answer(request)))
 
     def serve_in_thread(self, name: str, kind, answer: Callable) -> None:
-        """Advertise a service whose slow ``answer`` runs in its own thread; it must use ``between_steps``."""
+        """Advertise a slow service that is handled in its own thread, while the simulation runs.
+
+        Args:
+            name: Name of the service, below /gazebo.
+            kind: Type of the service.
+            answer: Returns the response to a request; must access the scene by ``between_steps``.
+        """
         rospy.Service(rospy.names.ns_join(NAMESPACE, name), kind, answer)
 
     def between_steps(self, function: Callable[[], T]) -> T:
@@ -39,10 +55,10 @@ class GazeboServer:
         return self._calls.call(function)
 
     def subscribe(self, name: str, kind, callback: Callable) -> None:
-        """Subscribe to /gazebo/``name``.
+        """Subscribe to a topic whose messages are handled between two steps.
 
         Args:
-            name: Of the topic.
+            name: Name of the topic, below /gazebo.
             kind: Type of its messages.
             callback: Called with a message and a function (success, text) that logs a failure.
         """
@@ -54,7 +70,15 @@ class GazeboServer:
 
 
 def frame_named(scene: Scene, name: str) -> Optional[KinematicState]:
-    """Return the state of a model or link, or of the world frame; None if there is none of that name."""
+    """Return the state of a reference frame in the world.
+
+    Args:
+        scene: The simulated world.
+        name: Name of a model or link, or one of WORLD_NAMES.
+
+    Returns:
+        The state; None if there is no such frame.
+    """
     if name in WORLD_NAMES:
         return KinematicState(np.eye(4), np.zeros(3), np.zeros(3))
     try:
@@ -66,7 +90,15 @@ def frame_named(scene: Scene, name: str) -> Optional[KinematicState]:
 
 
 def relative(motion: KinematicState, frame: KinematicState) -> KinematicState:
-    """Transform a state from the world to a frame, with the velocity relative to that of the frame."""
+    """Transform a state from the world to a frame.
+
+    Args:
+        motion: Pose and velocity in the world.
+        frame: Pose and velocity of the frame in the world.
+
+    Returns:
+        The pose in the frame, and the velocity relative to the frame's, along its axes.
+    """
     world_to_frame = frame.pose[:3, :3].T
     return KinematicState(
         inverse(frame.pose) @ motion.pose,
@@ -76,7 +108,15 @@ def relative(motion: KinematicState, frame: KinematicState) -> KinematicState:
 
 
 def absolute(motion: KinematicState, frame: KinematicState) -> KinematicState:
-    """Transform a state from a frame to the world; its velocity is absolute, along the axes of the frame."""
+    """Transform a state from a frame to the world.
+
+    Args:
+        motion: Pose in the frame, and absolute velocity along its axes.
+        frame: Pose of the frame in the world.
+
+    Returns:
+        Pose and velocity in the world.
+    """
     rotation = frame.pose[:3, :3]
     return KinematicState(frame.pose @ motion.pose, rotation @ motion.linear, rotation @ motion.angular)
 

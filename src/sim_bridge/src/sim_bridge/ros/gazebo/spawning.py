@@ -33,11 +33,14 @@ Insertions = List[Callable[[], None]]
 class SpawnServices:
     """Services spawn_sdf_model, spawn_urdf_model and delete_model.
 
-    Files are read in the thread of the call, so the simulation runs on; only the result is inserted between
-    steps.
+    Files are read in the thread of the call while the simulation runs; only the result is inserted between
+    two steps.
 
     Args:
-        model_folders: Searched for models that spawned ones include.
+        scene: The simulated world.
+        robots: Spawned robots are added to it.
+        server: Advertises the services.
+        model_folders: Folders of the models that spawned ones include.
     """
 
     def __init__(self, scene: Scene, robots: RobotManager, server: GazeboServer, model_folders):
@@ -120,7 +123,13 @@ class SpawnedModelsPublisher:
         self._publisher = rospy.Publisher("~spawned", SpawnedModels, queue_size=1, latch=True)
 
     def add(self, name: str, xml: str, pose: np.ndarray) -> None:
-        """Add a model; ``pose`` is (4, 4), in the world."""
+        """Add a model.
+
+        Args:
+            name: Name of the model.
+            xml: Its SDF or URDF text.
+            pose: Pose (4, 4) in the world.
+        """
         self._models[name] = SpawnedModel(name, xml, pose3_to_msg(pose))
         self._publish()
 

@@ -17,7 +17,7 @@ BEARINGS = {LEFT: math.radians(70.0), CENTRE: 0.0, RIGHT: -math.radians(70.0)}
 
 
 class BumperCloud:
-    """Makes a message while a sector is active, and one more when none is any more."""
+    """Point cloud of the active sectors, due while a sector is active and once more afterwards."""
 
     def __init__(self):
         self._active: FrozenSet[int] = frozenset()
@@ -28,7 +28,13 @@ class BumperCloud:
 
     @staticmethod
     def message(reading: KobukiReading, stamp: rospy.Time, frame: str) -> PointCloud2:
-        """Make a cloud of three points: left, centre, right."""
+        """Return a cloud of three points: left, centre, right; those of inactive sectors are far away.
+
+        Args:
+            reading: Pressed and cliff sectors.
+            stamp: Time of the measurement.
+            frame: Frame of the points, the base.
+        """
         active = reading.bumpers | reading.cliffs
         reach = np.array([RADIUS if sector in active else FAR for sector in BEARINGS])
         bearings = np.array(list(BEARINGS.values()))

@@ -10,7 +10,14 @@ from sim_bridge.scene import Scene
 
 
 class KobukiCommands:
-    """Subscribes to commands for motors, odometry, LEDs and sound of a robot."""
+    """Subscribes to commands for motors, odometry, LEDs and sound of a robot.
+
+    Args:
+        scene: The simulated world.
+        name: Name of the robot's model.
+        namespace: Namespace of the topics.
+        calls: Queue of the thread that owns the scene.
+    """
 
     def __init__(self, scene: Scene, name: str, namespace: str, calls: CallQueue):
         self._scene = scene

@@ -36,6 +36,12 @@ class KobukiTopics:
         return any(publisher.get_num_connections() for publisher in self._all)
 
     def publish(self, reading: KobukiReading, stamp: rospy.Time) -> None:
+        """Publish events of changes, the state, and the cloud of the bumper.
+
+        Args:
+            reading: State of the sensors.
+            stamp: Time of the measurement.
+        """
         last, self._last = self._last, reading
         for sector in sorted(reading.bumpers ^ last.bumpers):
             self._bumper.publish(BumperEvent(bumper=sector, state=sector in reading.bumpers))

@@ -86,7 +86,11 @@ class LockStep:
         return [name[1:] for name in self.awaited] or self._connections.missing()
 
     def may_step(self, stamp: float) -> bool:
-        """Return whether time may pass ``stamp`` [simulated s]; make the deliveries and ticks due then."""
+        """Return whether the next step may be taken; make the deliveries and begin the ticks that are due.
+
+        Args:
+            stamp: Present simulated time [s].
+        """
         if self._coordinator.delivery_due(stamp):
             self._check_topology(self._name, transport.topology())
         if not self._connections.is_complete:

@@ -51,7 +51,12 @@ _ANGLES = np.radians(np.arange(0.0, 360.0, 30.0))
 
 
 def footprint_of(uri: str, scale: Tuple[float, float, float]) -> Optional[Mesh]:
-    """Return prisms over the footprint of a mesh, with its scale; None if the mesh is not known."""
+    """Return prisms over the footprint of a mesh; None if the mesh is not known.
+
+    Args:
+        uri: URI of the mesh.
+        scale: Scale factors along x, y and z.
+    """
     name = uri.partition("://")[2].lstrip("/")
     if name not in FOOTPRINTS:
         return None

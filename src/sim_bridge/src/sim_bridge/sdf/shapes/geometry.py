@@ -20,7 +20,12 @@ class UnsupportedGeometryError(Exception):
 
 
 class MissingMeshError(UnsupportedGeometryError):
-    """The file of a mesh is missing; ``fallback``: its footprint, if that is known."""
+    """The file of a mesh is missing.
+
+    Args:
+        text: The reason, for the warning.
+        fallback: Prisms over the mesh's footprint, if that is known.
+    """
 
     def __init__(self, text: str, fallback: Optional[Mesh] = None):
         super().__init__(text)
@@ -29,6 +34,11 @@ class MissingMeshError(UnsupportedGeometryError):
 
 def read_shape(geometry: Element, folder: Path, model_folders: Sequence[Path]) -> Optional[VisualShape]:
     """Return the shape of a <geometry>, None if it is empty; a mesh is found but not loaded.
+
+    Args:
+        geometry: The element.
+        folder: Folder to which relative paths of meshes refer.
+        model_folders: Folders that are searched for ``model://`` URIs.
 
     Raises:
         UnsupportedGeometryError: The geometry is missing or not supported.

@@ -9,7 +9,13 @@ from sim_bridge.geometry.shapes import Mesh
 
 
 def prism(rings: Sequence[np.ndarray], bottom: float, top: float) -> Mesh:
-    """Return a closed prism over the first of ``rings``, (N, 2) each, with the others as holes."""
+    """Return a closed vertical prism, whose lids are triangulated by ear clipping.
+
+    Args:
+        rings: Corners (N, 2), in order [m]: of the outline first, then of each hole.
+        bottom: Height of the lower lid [m].
+        top: Height of the upper lid [m].
+    """
     points_xy, ends = np.vstack(rings), np.cumsum([len(ring) for ring in rings])
     lid = mapbox_earcut.triangulate_float64(points_xy, ends.astype(np.uint32)).reshape(-1, 3).astype(np.int64)
     count = len(points_xy)
