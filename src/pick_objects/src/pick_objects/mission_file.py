@@ -2,7 +2,7 @@
 
 from dataclasses import fields
 from pathlib import Path
-from typing import Dict, List, Mapping, Optional, Set, Tuple
+from typing import Dict, List, Mapping, Optional, Set, Tuple, Union
 
 from pick_objects.config import ErrandSettings
 from pick_objects.mission import ORANGE, Delivery, Mission, MissionObject
@@ -18,7 +18,7 @@ TEXT_SOURCE = "mission"  # in messages, where the file's name would be
 
 
 def load_mission(
-    path,
+    path: Union[str, Path],
     known_places: Places = {},
     defaults: ErrandSettings = ErrandSettings(),
     grid: Optional[OccupancyGrid] = None,
