@@ -79,7 +79,7 @@ def measure(name: str) -> Measurement:
     world = {"seed": WORLD}
     env.reset(seed=0, options=world)
     env.action_space.seed(0)
-    simulation = env._playground._simulation  # type: ignore[attr-defined]
+    simulation = env._simulation._simulation  # type: ignore[attr-defined]
     taken: List[float] = []
     least: List[float] = []
     for seed in range(BLOCKS + 1):

@@ -16,27 +16,31 @@ import sys
 import numpy as np
 from helpers.robot_over_ros import RobotOverRos, add_node_options, client_with_goal, is_under_way, move_base
 
-from laboratory.scenario.seeds import seeds_of
+from laboratory.scenario.seeds import parse_seeds
 from laboratory.statistics.summary import share
-from laboratory.suites import one_scenario
-from laboratory.tasks.reach import config_of
+from laboratory.suites import load_scenario
+from laboratory.tasks.odom_goal import navigation_config
 from laboratory.worlds.barn import score
 from sim_bridge import Simulation, robot_named
 
 
 def main() -> int:
     options = _options()
-    scenario = one_scenario(options.scenario)
-    seeds = scenario.seeds if options.seeds is None else seeds_of(options.seeds)
+    scenario = load_scenario(options.scenario)
+    seeds = scenario.seeds if options.seeds is None else parse_seeds(options.seeds)
     profile, runs = robot_named(scenario.robot), []
-    options.config = options.config or config_of(scenario.robot)
+    options.config = options.config or navigation_config(scenario.robot)
     with move_base(options, scenario.parameters):
         robot = RobotOverRos(options.speed)
         for seed in seeds:
             arena = scenario.arena(seed)
             simulation = Simulation(arena.world, profile, scenario.simulation, seed, scenario.start)
             outcome, seconds = _drive(robot, simulation, scenario)
-            points = score(seconds, arena.way) if outcome == "success" and arena.way else 0.0
+            points = (
+                score(seconds, arena.reference_length)
+                if outcome == "success" and arena.reference_length
+                else 0.0
+            )
             print(f"seed {seed}: {outcome:9s} {seconds:5.1f} s, score {points:.3f}", flush=True)
             runs.append((outcome, seconds, points))
     print(json.dumps(_summary(runs), indent=2))

@@ -122,7 +122,7 @@ def _inputs(path: Path) -> object:
 
 
 def _scenario(path: Path) -> object:
-    from laboratory.scenario.reading import read_scenario
+    from laboratory.scenario.reader import read_scenario
 
     return read_scenario(path).digest()
 

@@ -13,9 +13,9 @@ from pathlib import Path
 import rostest
 from network import NetworkLink
 
-from laboratory.playing import play
-from laboratory.results.store import Store
+from laboratory.results.store import ResultStore
 from laboratory.results.version import version
+from laboratory.runner import run_scenario
 from laboratory.scenario import read_scenario
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -65,14 +65,14 @@ class LaboratoryOnTwoHostsTest(unittest.TestCase):
         self.fail(f"not both workers have come within {START_SECONDS:g} s: {told or 'none'}")
 
     def results_in(self, folder):
-        store = Store(folder / "results.sqlite")
+        store = ResultStore(folder / "results.sqlite")
         results = store.results(read_scenario(folder / "errand.yaml").digest(), version())
         store.close()
         return [replace(result, wall_seconds=0.0) for result in results]
 
     def results_here(self, folder):
         scenario = read_scenario(folder / "errand.yaml")
-        return [replace(play(scenario, seed), wall_seconds=0.0) for seed in SEEDS]
+        return [replace(run_scenario(scenario, seed), wall_seconds=0.0) for seed in SEEDS]
 
 
 if __name__ == "__main__":

@@ -18,7 +18,7 @@ class CLASS:
     posts: int = 6
 
     def arena(self, seed: int) -> Arena:
-        """See laboratory.worlds.own.Generator; one seed always gives the same world."""
+        """See laboratory.worlds.custom.WorldGenerator; one seed always gives the same world."""
         rng, half = np.random.default_rng(seed), 0.5 * self.size
         sides = [
             wall("north", 0.0, half, self.size, 0.1),

@@ -11,13 +11,20 @@ import pytest
 from gymnasium.utils.env_checker import check_env, data_equivalence
 
 import home_service_gym
-from home_service_gym.drawing import MOVING, Picture
-from home_service_gym.environments import Barn, Dynabarn, Explore, Follow, HomeService, PointGoal
-from home_service_gym.maps.discovery import Discovery
-from home_service_gym.playground import crowd_of
-from home_service_gym.task import Marks
-from home_service_gym.tasks.follow import _walk
-from home_service_gym.turtlebot3_stage import WALKS, TurtleBot3Stage
+from home_service_gym.environments import (
+    BarnEnv,
+    DynabarnEnv,
+    ExploreEnv,
+    FollowEnv,
+    HomeServiceEnv,
+    PointGoalEnv,
+)
+from home_service_gym.episode_simulation import moving_discs
+from home_service_gym.maps.explored_area import ExploredArea
+from home_service_gym.task import Overlay
+from home_service_gym.tasks.follow import _leader_path
+from home_service_gym.top_view import MOVING, TopView
+from home_service_gym.turtlebot3_stage import WALKER_KEYFRAMES, TurtleBot3StageEnv
 from planar import FREE, OCCUPIED, Pose2, Scan, SettingsError, grid_from_picture
 
 VARIANTS = [
@@ -43,13 +50,13 @@ def test_it_passes_the_checker_of_gymnasium_without_a_complaint(name, given):
 def episode(env, seed, steps=60):
     observation, _ = env.reset(seed=seed)
     env.action_space.seed(seed)
-    told = [observation]
+    options = [observation]
     for _ in range(steps):
         observation, reward, terminated, _, info = env.step(env.action_space.sample())
-        told += [observation, reward, terminated, info]
+        options += [observation, reward, terminated, info]
         if terminated:
             break
-    return told
+    return options
 
 
 @each_variant
@@ -79,24 +86,26 @@ def test_a_picture_shows_the_episode_go_on(name):
 
 
 def test_what_crosses_is_drawn_as_wide_as_it_is():
-    env = Dynabarn()
+    env = DynabarnEnv()
     env.reset(seed=1, options={"seed": 1})
-    world, picture = env._playground.arena.world, Picture(env._playground)
-    pixels = crowd_of(world)[:, 2] * picture._scale
-    drawn = (picture.draw(env.moment, Marks(trajectories=world.trajectories)) == MOVING).all(axis=2).sum()
+    world, picture = env._simulation.arena.world, TopView(env._simulation)
+    pixels = moving_discs(world)[:, 2] * picture._scale
+    drawn = (picture.draw(env.state, Overlay(trajectories=world.trajectories)) == MOVING).all(axis=2).sum()
     assert drawn == pytest.approx(math.pi * (pixels**2).sum(), rel=0.2)
     env.close()
 
 
 def test_processes_play_what_one_process_plays():
     make = functools.partial(gymnasium.make_vec, "home_service_gym:PointGoal-v0", num_envs=2)
-    told = []
+    options = []
     for mode in ("sync", "async"):
         envs = make(vectorization_mode=mode)
         envs.action_space.seed(1)
-        told.append([envs.reset(seed=[7, 8])[0], *(envs.step(envs.action_space.sample()) for _ in range(20))])
+        options.append(
+            [envs.reset(seed=[7, 8])[0], *(envs.step(envs.action_space.sample()) for _ in range(20))]
+        )
         envs.close()
-    assert data_equivalence(*told, exact=True)
+    assert data_equivalence(*options, exact=True)
 
 
 def steer(observation):
@@ -107,7 +116,7 @@ def steer(observation):
     return np.array([ahead, np.clip(bearing, -0.5, 0.5)], dtype=np.float32)
 
 
-def play(env, policy, seed, steps=900, options=None):
+def run_episode(env, policy, seed, steps=900, options=None):
     observation, _ = env.reset(seed=seed, options=options)
     rewards = []
     for _ in range(steps):
@@ -120,7 +129,7 @@ def play(env, policy, seed, steps=900, options=None):
 
 
 def test_a_goal_in_the_same_room_is_reached_and_worth_its_way():
-    outcomes = [play(PointGoal(), steer, seed) for seed in range(8)]
+    outcomes = [run_episode(PointGoalEnv(), steer, seed) for seed in range(8)]
     reached = [total for total, outcome in outcomes if outcome == "success"]
     assert reached and min(reached) > 9.0
     assert any(outcome == "collision" and total < 0.0 for total, outcome in outcomes)
@@ -129,40 +138,40 @@ def test_a_goal_in_the_same_room_is_reached_and_worth_its_way():
 def test_what_a_beam_has_reached_is_known_and_what_lies_behind_is_not():
     grid = grid_from_picture("..........\n....#.....\n..........\n..........", 0.1)
     angles, ranges = (-0.25, 0.0, 0.25, 1.5), np.array([0.62, 0.62, np.inf, 0.1], dtype=np.float32)
-    discovery, base = Discovery(grid), Pose2(0.05, 0.15)
+    explored_area, base = ExploredArea(grid), Pose2(0.05, 0.15)
     scan = Scan(0.0, angles[0], 0.25, ranges[:3], 0.0, 3.0)
-    news = discovery.see(base, scan) + discovery.see(
+    new_cells = explored_area.add_scan(base, scan) + explored_area.add_scan(
         base, replace(scan, angle_min=angles[3], ranges=ranges[3:])
     )
-    known = discovery.known
+    explored = explored_area.explored
     for angle, reach in zip(angles, (7.2, 7.2, 30.0, 2.0)):
         for along in np.arange(0.0, reach, 0.01):
             row, col = math.floor(1.5 + along * math.sin(angle)), math.floor(0.5 + along * math.cos(angle))
-            if not (0 <= row < known.shape[0] and 0 <= col < known.shape[1]):
+            if not (0 <= row < explored.shape[0] and 0 <= col < explored.shape[1]):
                 break
-            assert known[row, col]
+            assert explored[row, col]
             if grid.cells[row, col] == OCCUPIED:
                 break
-    assert known[2, 4] and not known[2, 5], "a wall, and behind it"
-    assert known[1, 7] and not known[1, 9], "a cell beyond where the beam ends"
-    count = np.count_nonzero(known & (grid.cells == FREE))
-    assert news == pytest.approx(0.01 * count)
-    assert discovery.share == count / np.count_nonzero(grid.cells == FREE)
-    assert discovery.see(base, scan) == 0.0, "nothing is new"
+    assert explored[2, 4] and not explored[2, 5], "a wall, and behind it"
+    assert explored[1, 7] and not explored[1, 9], "a cell beyond where the beam ends"
+    count = np.count_nonzero(explored & (grid.cells == FREE))
+    assert new_cells == pytest.approx(0.01 * count)
+    assert explored_area.share == count / np.count_nonzero(grid.cells == FREE)
+    assert explored_area.add_scan(base, scan) == 0.0, "nothing is new"
 
 
 def along_the_way(env, goal):
     """An observation of a point of the way to a goal a little ahead; of the goal itself when it is near."""
-    ground, pose = env._playground.ground, env._moment.base_in_world
-    way_xy = ground.way(ground.distances_to(goal), pose)
-    x, y = way_xy[min(5, len(way_xy) - 1)] - (pose.x, pose.y)
+    traversable_space, pose = env._simulation.traversable_space, env._state.base_in_world
+    path_xy = traversable_space.path(traversable_space.distances_to(goal), pose)
+    x, y = path_xy[min(5, len(path_xy) - 1)] - (pose.x, pose.y)
     bearing = np.arctan2(y, x) - pose.yaw
     is_there = pose.distance_to(goal) < 0.15
     return {"goal": (0.0 if is_there else 0.6, np.cos(bearing), np.sin(bearing))}
 
 
 def test_the_errand_waits_at_the_pickup_zone_and_ends_at_the_drop_off_zone():
-    env = HomeService()
+    env = HomeServiceEnv()
     observation, _ = env.reset(seed=0)
     assert observation["carrying"] == [0]
     pickup, *onwards = [Pose2(2.0, 3.0), Pose2(-0.3, 0.1), Pose2(-1.7, 0.1), Pose2(-2.0, 1.0)]
@@ -170,7 +179,7 @@ def test_the_errand_waits_at_the_pickup_zone_and_ends_at_the_drop_off_zone():
     for _ in range(1200):
         goal = onwards[0] if carrying else pickup
         observation, reward, terminated, _, info = env.step(steer(along_the_way(env, goal)))
-        base = env._moment.base_in_world
+        base = env._state.base_in_world
         stood += base.distance_to(pickup) < 0.16
         if carrying and len(onwards) > 1 and base.distance_to(goal) < 0.2:
             onwards.pop(0)
@@ -186,26 +195,26 @@ def test_the_errand_waits_at_the_pickup_zone_and_ends_at_the_drop_off_zone():
 
 
 def test_a_leader_who_is_left_alone_is_lost_and_one_who_is_followed_is_not():
-    assert play(Follow(), lambda _: np.zeros(2, np.float32), 1)[1] == "lost"
-    total, outcome = play(
-        Follow(), lambda seen: steer({"goal": seen["leader"] - (0.9, 0.0, 0.0)}), 2, steps=150
+    assert run_episode(FollowEnv(), lambda _: np.zeros(2, np.float32), 1)[1] == "lost"
+    total, outcome = run_episode(
+        FollowEnv(), lambda seen: steer({"goal": seen["leader"] - (0.9, 0.0, 0.0)}), 2, steps=150
     )
     assert outcome == "" and total > 2.0
 
 
 def test_a_leader_walks_on_from_a_place_that_is_one_step_from_the_last():
     class Neighbours:
-        stations = (0, 1)
+        waypoints = (0, 1)
 
-        def way_between(self, start, goal):
+        def path_between(self, start, goal):
             return np.array([[start, 0.0], [goal, 0.0]] if start != goal else [[start, 0.0]], dtype=float)
 
-    way_xy = _walk(Neighbours(), np.random.default_rng(0))
-    assert len(way_xy) > 20 and (np.hypot(*np.diff(way_xy, axis=0).T) == 1.0).all()
+    path_xy = _leader_path(Neighbours(), np.random.default_rng(0))
+    assert len(path_xy) > 20 and (np.hypot(*np.diff(path_xy, axis=0).T) == 1.0).all()
 
 
 def test_a_robot_that_spins_out_of_control_is_told_as_fast_as_is_declared():
-    env = Dynabarn()
+    env = DynabarnEnv()
     env.reset(seed=1003)
     env.action_space.seed(1003)
     fastest = 0.0
@@ -214,7 +223,7 @@ def test_a_robot_that_spins_out_of_control_is_told_as_fast_as_is_declared():
             action = env.action_space.sample()
         observation, _, is_over, *_ = env.step(action)
         assert observation in env.observation_space
-        fastest = max(fastest, abs(env.moment.twist.omega))
+        fastest = max(fastest, abs(env.state.twist.omega))
         if is_over:
             break
     assert fastest > 8.0, "it did not spin"
@@ -222,7 +231,7 @@ def test_a_robot_that_spins_out_of_control_is_told_as_fast_as_is_declared():
 
 
 def test_turning_round_shows_more_of_a_home_only_once():
-    env = Explore()
+    env = ExploreEnv()
     observation, _ = env.reset(seed=2)
     assert 0.0 < (observation["map"] > 0).mean() < 0.6
     rewards = [env.step(np.array([0.0, 0.5], np.float32))[1] for _ in range(80)]
@@ -231,7 +240,7 @@ def test_turning_round_shows_more_of_a_home_only_once():
 
 
 def test_moving_cylinders_come_nearer_without_the_robot_moving():
-    env = Dynabarn()
+    env = DynabarnEnv()
     first = env.reset(seed=3)[0]["scan"]
     for _ in range(30):
         last = env.step(np.zeros(2, np.float32))[0]["scan"]
@@ -240,12 +249,14 @@ def test_moving_cylinders_come_nearer_without_the_robot_moving():
 
 
 def test_straight_ahead_through_a_field_is_a_collision():
-    total, outcome = play(Barn(), lambda _: np.array([0.5, 0.0], np.float32), 0, options={"seed": 2})
+    total, outcome = run_episode(
+        BarnEnv(), lambda _: np.array([0.5, 0.0], np.float32), 0, options={"seed": 2}
+    )
     assert outcome == "collision" and total < 0.0
 
 
 def test_the_first_goal_of_a_stage_is_reached_straight_ahead_and_another_follows():
-    env = TurtleBot3Stage(1)
+    env = TurtleBot3StageEnv(1)
     seen, _ = env.reset(seed=0)
     assert seen.shape == (26,) and seen[25] == pytest.approx(0.6, abs=0.05)
     rewards = [env.step(2)[1] for _ in range(20)]
@@ -255,23 +266,29 @@ def test_the_first_goal_of_a_stage_is_reached_straight_ahead_and_another_follows
 
 
 def test_what_walks_in_stage_four_goes_as_far_as_its_keyframes():
-    trajectories = {course.link: course for course in TurtleBot3Stage(4)._playground.arena.world.trajectories}
-    for name, walk in WALKS.items():
-        course = trajectories[f"{name}::link"]
-        there = np.array(course.at(walk[2][0])) - course.at(0.0)
+    trajectories = {
+        trajectory.link: trajectory
+        for trajectory in TurtleBot3StageEnv(4)._simulation.arena.world.trajectories
+    }
+    for name, walk in WALKER_KEYFRAMES.items():
+        trajectory = trajectories[f"{name}::link"]
+        there = np.array(trajectory.at(walk[2][0])) - trajectory.at(0.0)
         assert there == pytest.approx(walk[2][1:])
 
 
 @pytest.mark.parametrize(
     ("make", "complaint"),
     [
-        (lambda: TurtleBot3Stage(5), "stage must be 1, 2, 3 or 4, got 5"),
-        (lambda: PointGoal(render_mode="ansi"), "render_mode must be rgb_array, human or None, got 'ansi'"),
-        (lambda: PointGoal("nowhere"), "nowhere.yaml"),
-        (lambda: HomeService("fields"), "task must be an errand"),
-        (lambda: Barn("home_errand"), "task must be reach"),
-        (lambda: Barn(folder="/nonexistent"), "no pairs of world_N.world and path_N.npy"),
-        (lambda: Dynabarn(folder="/nonexistent"), "no files dynabarn_N.yaml"),
+        (lambda: TurtleBot3StageEnv(5), "stage must be 1, 2, 3 or 4, got 5"),
+        (
+            lambda: PointGoalEnv(render_mode="ansi"),
+            "render_mode must be rgb_array, human or None, got 'ansi'",
+        ),
+        (lambda: PointGoalEnv("nowhere"), "nowhere.yaml"),
+        (lambda: HomeServiceEnv("fields"), "task must be an errand"),
+        (lambda: BarnEnv("home_errand"), "task must be reach"),
+        (lambda: BarnEnv(folder="/nonexistent"), "no pairs of world_N.world and path_N.npy"),
+        (lambda: DynabarnEnv(folder="/nonexistent"), "no files dynabarn_N.yaml"),
     ],
 )
 def test_what_cannot_be_played_is_told(make, complaint):

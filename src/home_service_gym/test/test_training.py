@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from home_service_gym import training
-from home_service_gym.environments import PointGoal
-from home_service_gym.training import clear_in_scan, evolve, play
+from home_service_gym.environments import PointGoalEnv
+from home_service_gym.training import evolve, run_episode, sector_ranges
 from planar import Scan
 from plugin_examples.learned import LOOKAHEAD, SECTORS, VIEW_RANGE, Policy
 
@@ -13,15 +13,15 @@ from plugin_examples.learned import LOOKAHEAD, SECTORS, VIEW_RANGE, Policy
 def test_the_sectors_tell_how_far_it_is_all_around():
     ranges = np.full(360, np.inf)
     ranges[180] = 0.7  # straight ahead
-    clear = clear_in_scan(Scan(0.0, -np.pi, 2.0 * np.pi / 360, ranges, 0.1, 8.0))
+    clear = sector_ranges(Scan(0.0, -np.pi, 2.0 * np.pi / 360, ranges, 0.1, 8.0))
     assert clear[SECTORS // 2] == pytest.approx(0.7)
     assert np.delete(clear, SECTORS // 2) == pytest.approx(VIEW_RANGE)
 
 
 def test_without_its_network_it_follows_the_way_to_some_goals(monkeypatch):
     monkeypatch.setattr(training, "HOMES", (0,))
-    env = PointGoal("home_errand", lookahead=LOOKAHEAD)
-    outcomes = [play(env, Policy(np.zeros(Policy.WEIGHT_COUNT)), seed)[1] for seed in range(6)]
+    env = PointGoalEnv("home_errand", lookahead=LOOKAHEAD)
+    outcomes = [run_episode(env, Policy(np.zeros(Policy.WEIGHT_COUNT)), seed)[1] for seed in range(6)]
     env.close()
     assert outcomes.count("success") >= 2, outcomes
 

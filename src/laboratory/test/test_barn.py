@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from laboratory.suites import scenarios_of
+from laboratory.suites import load_suites
 from laboratory.worlds.barn import BarnFolder, reference_length, score
 from planar import SettingsError
 
@@ -31,14 +31,14 @@ def test_seeds_take_the_worlds_by_turns(folder):
 
 
 def test_a_scenario_of_barn_can_be_played(folder):
-    scenarios, complaints = scenarios_of([str(folder / "barn.yaml")])
+    scenarios, complaints = load_suites([str(folder / "barn.yaml")])
     assert complaints == [] and scenarios[0].task.files() == ()
 
 
 def test_a_folder_without_worlds_is_named_with_its_line(tmp_path):
     path = tmp_path / "barn.yaml"
     path.write_text(SCENARIO)
-    _, complaints = scenarios_of([str(path)])
+    _, complaints = load_suites([str(path)])
     assert complaints[0].startswith(f"{path}:1: world.barn cannot be used: ")
     assert "world_N" in complaints[0]
 
@@ -60,9 +60,9 @@ def test_files_without_a_number_are_none_of_its_worlds(folder):
 
 
 def test_the_score_is_at_best_a_half_and_falls_with_the_time_taken():
-    way = reference_length(np.array([[15, 0], [15, 30]]))
-    assert way == pytest.approx(10.0, abs=0.5)
-    optimal = way / 2.0
-    assert score(1.0, way) == score(2.0 * optimal, way) == 0.5
-    assert score(4.0 * optimal, way) == 0.25
-    assert score(1000.0, way) == 0.125
+    path_length = reference_length(np.array([[15, 0], [15, 30]]))
+    assert path_length == pytest.approx(10.0, abs=0.5)
+    optimal = path_length / 2.0
+    assert score(1.0, path_length) == score(2.0 * optimal, path_length) == 0.5
+    assert score(4.0 * optimal, path_length) == 0.25
+    assert score(1000.0, path_length) == 0.125

@@ -5,17 +5,17 @@ import numpy as np
 import pytest
 from scipy.ndimage import label
 
-from laboratory.generators.buildings import APART, _arena
-from laboratory.generators.furniture import ROOM_TO_STAND, WAY
+from laboratory.generators.buildings import PLACE_SPACING, _arena
+from laboratory.generators.floor_plan import SMALLEST_SIDE, Rectangle, generate_floor_plan
+from laboratory.generators.furniture import PASSAGE_RADIUS, STANDING_CLEARANCE
 from laboratory.generators.halls import Halls
 from laboratory.generators.homes import Homes
 from laboratory.generators.offices import Offices
 from laboratory.generators.raster import Raster
-from laboratory.generators.rooms import SMALLEST_SIDE, Room, floor_plan
-from laboratory.playing import play
+from laboratory.runner import run_scenario
 from laboratory.scenario import read_scenario
 from laboratory.suites import FOLDER
-from laboratory.tasks.ways import ROOM_TO_PASS
+from laboratory.tasks.shortest_paths import PASSAGE_CLEARANCE
 from planar import FREE, SettingsError
 from planar.geometry.distance_field import distance_field
 
@@ -36,7 +36,7 @@ def clearance_of(arena):
 
 def share_within_reach(arena):
     """Of where the robot has room, that it can come to from where it starts."""
-    regions, _ = label(clearance_of(arena) > ROOM_TO_PASS)
+    regions, _ = label(clearance_of(arena) > PASSAGE_CLEARANCE)
     return (regions == regions[cell_at(arena, 0.0, 0.0)]).sum() / (regions > 0).sum()
 
 
@@ -49,7 +49,7 @@ def cell_at(arena, x, y):
 def test_no_furniture_stands_where_the_robot_starts(seed):
     """Homes whose map had the robot shut in by what the coarser raster took for far enough."""
     arena = Homes().arena(seed)
-    assert clearance_of(arena)[cell_at(arena, 0.0, 0.0)] > ROOM_TO_STAND
+    assert clearance_of(arena)[cell_at(arena, 0.0, 0.0)] > STANDING_CLEARANCE
     assert len(arena.places) >= 2
 
 
@@ -67,13 +67,13 @@ def test_a_building_is_as_large_as_asked_for(buildings):
     for arena in arenas:
         xy = np.array([body.pose_in_world[:2, 3] for body in arena.world.bodies if "wall_" in body.name])
         width, depth = np.ptp(xy, axis=0)
-        assert source.least <= width * depth <= source.largest
+        assert source.min_area <= width * depth <= source.max_area
         assert f"{source.kind} of {width * depth:.0f} m2" == arena.title
 
 
 def test_every_place_can_be_reached_from_where_the_robot_starts(buildings):
     for arena in buildings[1]:
-        regions, _ = label(clearance_of(arena) > ROOM_TO_PASS)
+        regions, _ = label(clearance_of(arena) > PASSAGE_CLEARANCE)
         places = [(0.0, 0.0)] + [(place.pose.x, place.pose.y) for place in arena.places]
         of_places = {int(regions[cell_at(arena, *place)]) for place in places}
         assert len(of_places) == 1 and of_places != {0}
@@ -94,26 +94,26 @@ def test_places_are_apart_and_enough_for_chores(buildings):
     for arena in buildings[1]:
         assert len(arena.places) >= 2
         for number, place in enumerate(arena.places):
-            assert all(place.pose.distance_to(other.pose) > APART for other in arena.places[:number])
+            assert all(place.pose.distance_to(other.pose) > PLACE_SPACING for other in arena.places[:number])
 
 
 def test_an_office_has_a_door_from_its_corridor_to_each_room_and_some_between_rooms():
-    plans = [Offices().draw(200.0, np.random.default_rng(seed)) for seed in range(12)]
-    for plan in plans:
-        _, y = plan.start
-        beside_corridor = [door for door in plan.doorways if door.y1 == door.y2 and abs(door.y1 - y) < 1.3]
+    layouts = [Offices().layout(200.0, np.random.default_rng(seed)) for seed in range(12)]
+    for layout in layouts:
+        _, y = layout.start
+        beside_corridor = [door for door in layout.doorways if door.y1 == door.y2 and abs(door.y1 - y) < 1.3]
         assert len(beside_corridor) >= 6
         assert {door.y1 < y for door in beside_corridor} == {True, False}
-    between_rooms = [sum(door.x1 == door.x2 for door in plan.doorways) for plan in plans]
+    between_rooms = [sum(door.x1 == door.x2 for door in layout.doorways) for layout in layouts]
     assert sum(between_rooms) > 12
 
 
 def test_halls_have_shelves_or_pillars_with_room_between_them():
     kinds = set()
     for seed in range(12):
-        plan = Halls().draw(300.0, np.random.default_rng(seed))
-        first = plan.furniture[0]
-        standing = [piece for piece in plan.furniture if piece.area == pytest.approx(first.area)]
+        layout = Halls().layout(300.0, np.random.default_rng(seed))
+        first = layout.furniture[0]
+        standing = [piece for piece in layout.furniture if piece.area == pytest.approx(first.area)]
         kinds.add(math.isclose(first.width, first.depth))
         assert len(standing) >= 4
         for number, piece in enumerate(standing):
@@ -127,14 +127,14 @@ def test_halls_have_shelves_or_pillars_with_room_between_them():
 @pytest.mark.parametrize("suite", ["offices", "halls"])
 def test_a_generated_building_can_be_played_in(suite):
     scenario = replace(read_scenario(FOLDER / f"{suite}.yaml"), world=SMALL[suite])
-    result = play(scenario, 1)
+    result = run_scenario(scenario, 1)
     assert result.is_success, result.reason
 
 
 @pytest.mark.parametrize("seed", range(20))
 def test_rooms_fill_the_outline_and_every_one_is_connected_by_doors(seed):
-    outline = Room(0.0, 0.0, 16.0, 12.0)
-    rooms, walls, doorways = floor_plan(outline, np.random.default_rng(seed))
+    outline = Rectangle(0.0, 0.0, 16.0, 12.0)
+    rooms, walls, doorways = generate_floor_plan(outline, np.random.default_rng(seed))
     assert len(doorways) == len(rooms) - 1
     assert len(rooms) > 1
     assert sum(room.area for room in rooms) == pytest.approx(outline.area)
@@ -142,9 +142,9 @@ def test_rooms_fill_the_outline_and_every_one_is_connected_by_doors(seed):
     raster = Raster(outline.width, outline.depth)
     for wall in walls:
         raster.fill(*wall.solid.corners)
-    reach = raster.within_reach(*rooms[0].middle, WAY)
+    reach = raster.reachable_from(*rooms[0].middle, PASSAGE_RADIUS)
     assert reach.any()
-    assert all((raster.within_reach(*room.middle, WAY) == reach).all() for room in rooms)
+    assert all((raster.reachable_from(*room.middle, PASSAGE_RADIUS) == reach).all() for room in rooms)
 
 
 @pytest.mark.parametrize(

@@ -6,8 +6,8 @@ import pytest
 
 from laboratory.page import page_html
 from laboratory.page.maps import heat_map
-from laboratory.page.page import command_of, verdict
-from laboratory.results.result import Result
+from laboratory.page.page import comparison_text, repeat_command
+from laboratory.results.result import RunResult
 from laboratory.scenario import read_scenario
 from laboratory.statistics.comparison import compare
 from laboratory.statistics.summary import summary
@@ -15,7 +15,7 @@ from laboratory.suites import FOLDER
 
 SCENARIO = read_scenario(FOLDER / "home_errand.yaml")
 TRACK = np.array([[0.0, 0.0, 0.0, 0.0], [1.0, 0.5, 0.1, 0.0]], dtype=np.float32).tobytes()
-WON = Result("d", 0, "v", "success", "done", seconds=20.0, driven=9.0, way=8.0, clearance=0.3, track=TRACK)
+WON = RunResult("d", 0, "v", "success", "done", seconds=20.0, driven=9.0, way=8.0, clearance=0.3, track=TRACK)
 LOST = replace(WON, seed=1, outcome="collision", reason="hit <a wall>", end_x=0.6, end_y=0.2)
 
 
@@ -26,7 +26,7 @@ def evaluated(scenario, results):
 @pytest.fixture(scope="module")
 def page():
     dwa = SCENARIO.with_planner("dwa_local_planner/DWAPlannerROS")
-    error = Result("d", 2, "v", "error", "the world does not load")
+    error = RunResult("d", 2, "v", "error", "the world does not load")
     return page_html([evaluated(SCENARIO, [WON, LOST]), evaluated(dwa, [WON, error])], "v1.2")
 
 
@@ -71,15 +71,15 @@ def test_a_heat_map_is_reddest_where_most_failed():
 
 def test_the_command_names_a_file_that_is_not_of_the_project(tmp_path):
     elsewhere = replace(SCENARIO, file=tmp_path / "my scenario.yaml")
-    assert command_of(elsewhere, 5) == f"./scripts/play.sh '{tmp_path}/my scenario.yaml' --seed 5"
+    assert repeat_command(elsewhere, 5) == f"./scripts/play.sh '{tmp_path}/my scenario.yaml' --seed 5"
 
 
 def test_a_run_of_the_graph_is_repeated_by_the_graph():
     official = replace(SCENARIO.with_planner("official"), is_over_ros=True)
     command = "./scripts/play.sh home_errand --seed 5 --planner official --over ros"
-    assert command_of(official, 5) == command
+    assert repeat_command(official, 5) == command
 
 
 def test_a_comparison_is_put_into_words():
-    assert verdict(compare([WON], [replace(WON, seed=7)])) == "no seeds in common"
-    assert verdict(compare([WON], [WON])) == "success: cannot tell (+0 −0, p 1)"
+    assert comparison_text(compare([WON], [replace(WON, seed=7)])) == "no seeds in common"
+    assert comparison_text(compare([WON], [WON])) == "success: cannot tell (+0 −0, p 1)"

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from laboratory.generators.crossings import Crossings
-from laboratory.generators.fields import Fields
-from laboratory.playing import play
-from laboratory.suites import scenarios_of
+from laboratory.generators.crossings import CrossingCylinders
+from laboratory.generators.fields import CylinderFields
+from laboratory.runner import run_scenario
+from laboratory.suites import load_suites
 from laboratory.worlds.dynabarn import DynabarnFolder
 
 WORLD = """\
@@ -30,31 +30,31 @@ def places(arena):
     return {body.name: body.pose_in_world[:2, 3].tolist() for body in arena.world.bodies}
 
 
-@pytest.mark.parametrize("source", [Fields(), Crossings()], ids=["fields", "crossings"])
+@pytest.mark.parametrize("source", [CylinderFields(), CrossingCylinders()], ids=["fields", "crossings"])
 def test_a_seed_has_a_world_of_its_own(source):
     uncached = type(source).arena.__globals__["_arena"].__wrapped__
-    arguments = (1,) if isinstance(source, Fields) else (source, 1)
+    arguments = (1,) if isinstance(source, CylinderFields) else (source, 1)
     assert places(source.arena(1)) == places(uncached(*arguments)) != places(source.arena(2))
 
 
 def test_there_is_a_way_through_every_field():
-    ways = [Fields().arena(seed).way for seed in range(8)]
-    assert all(way is not None and 10.0 <= way < 14.0 for way in ways), ways
-    assert len(set(ways)) > 1
+    lengths = [CylinderFields().arena(seed).reference_length for seed in range(8)]
+    assert all(length is not None and 10.0 <= length < 14.0 for length in lengths), lengths
+    assert len(set(lengths)) > 1
 
 
 @pytest.mark.parametrize("legs", [1, 4])
 def test_crossings_go_there_and_back_without_a_leap(legs):
-    for course in Crossings(1.0, 1.0, legs=legs).arena(3).world.trajectories:
-        places_xy = np.array([course.at(stamp) for stamp in np.arange(0.0, 100.0, 0.1)])
+    for trajectory in CrossingCylinders(1.0, 1.0, legs=legs).arena(3).world.trajectories:
+        places_xy = np.array([trajectory.at(stamp) for stamp in np.arange(0.0, 100.0, 0.1)])
         speeds = np.hypot(*np.diff(places_xy, axis=0).T) / 0.1
         assert np.median(speeds) > 0.85 and speeds.max() < 1.15
 
 
 def test_crossings_are_as_many_and_turn_as_often_as_asked_for():
-    trajectories = Crossings(1.0, 1.0, fewest=20, most=22, legs=4).arena(3).world.trajectories
+    trajectories = CrossingCylinders(1.0, 1.0, min_count=20, max_count=22, legs=4).arena(3).world.trajectories
     assert 20 <= len(trajectories) <= 22
-    assert {len(course.times) for course in trajectories} == {2 * 4 + 2}
+    assert {len(trajectory.times) for trajectory in trajectories} == {2 * 4 + 2}
 
 
 @pytest.fixture
@@ -70,14 +70,14 @@ def test_dynabarns_worlds_are_taken_by_turns_and_move(folder):
     source = DynabarnFolder(folder / "worlds")
     assert [source.arena(seed).title for seed in range(3)] == ["DynaBARN 0", "DynaBARN 5", "DynaBARN 10"]
     arena = source.arena(0)
-    assert arena.way == 20.0
-    assert [course.at(5.0) for course in arena.world.trajectories] == [(3.0, 0.0)]
+    assert arena.reference_length == 20.0
+    assert [trajectory.at(5.0) for trajectory in arena.world.trajectories] == [(3.0, 0.0)]
 
 
 def test_a_scenario_of_dynabarn_is_played(folder):
-    (scenario,), complaints = scenarios_of([str(folder / "scenario.yaml")])
+    (scenario,), complaints = load_suites([str(folder / "scenario.yaml")])
     assert complaints == []
-    assert play(scenario, 0).outcome == "success"
+    assert run_scenario(scenario, 0).outcome == "success"
 
 
 @pytest.mark.parametrize(
@@ -90,5 +90,5 @@ def test_a_scenario_of_dynabarn_is_played(folder):
 )
 def test_a_wrong_world_is_told(folder, wrong, complaint):
     (folder / "worlds/dynabarn_0.yaml").write_text(WORLD.replace(WORLD[WORLD.index("keyf") : -2], wrong))
-    _, complaints = scenarios_of([str(folder / "scenario.yaml")])
+    _, complaints = load_suites([str(folder / "scenario.yaml")])
     assert len(complaints) == 1 and complaint in complaints[0]

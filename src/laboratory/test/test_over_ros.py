@@ -6,10 +6,10 @@ from dataclasses import replace
 import pytest
 import yaml
 
-from laboratory.over_ros import _play_of
+from laboratory.launch_files import write_launch_files
+from laboratory.over_ros import _read_trace
 from laboratory.scenario import OFFICIAL, read_scenario
-from laboratory.staging import stage
-from laboratory.suites import FOLDER, scenarios_of
+from laboratory.suites import FOLDER, load_suites
 from pick_objects import load_mission
 from planar import Pose2, SettingsError, load_map
 from planar.maps.places import load_places
@@ -21,7 +21,7 @@ ERRAND = FOLDER / "home_errand.yaml"
 def test_chores_of_a_generated_home_are_told_as_files(tmp_path):
     homes = read_scenario(FOLDER / "homes.yaml")
     arena = homes.arena(3)
-    arguments = stage(homes, 3, tmp_path)
+    arguments = write_launch_files(homes, 3, tmp_path)
     assert load_map(arguments["map_file"]).cells.shape == arena.grid.cells.shape
     mission = load_mission(
         arguments["mission_file"], load_places(arguments["zones_file"]), grid=load_map(arguments["map_file"])
@@ -36,7 +36,7 @@ def test_faults_start_noise_and_parameters_are_told_as_files(tmp_path):
     scenario = replace(
         read_scenario(ERRAND), start=Pose2(0.5, 0.1, 0.2), faults=faults, parameters=parameters, planner="x/Y"
     )
-    arguments = stage(scenario, 0, tmp_path)
+    arguments = write_launch_files(scenario, 0, tmp_path)
     assert load_faults(arguments["faults_file"]) == faults
     told = yaml.safe_load(arguments["parameters_file"].read_text())
     assert told["/amcl"] == {"initial_pose_x": 0.5, "initial_pose_y": 0.1, "initial_pose_a": 0.2}
@@ -46,25 +46,25 @@ def test_faults_start_noise_and_parameters_are_told_as_files(tmp_path):
 
 
 def test_what_nodes_cannot_play_is_said_before_anything_is_played():
-    scenarios, complaints = scenarios_of(["fields"], is_over_ros=True)
+    scenarios, complaints = load_suites(["fields"], is_over_ros=True)
     assert not scenarios
     assert "fields.yaml: the task reach is played in one process only" in complaints[0]
 
 
 def test_the_official_move_base_plays_only_over_ros_and_only_where_it_is_installed(tmp_path, monkeypatch):
     with pytest.raises(SettingsError, match="planner official: that move_base is a node: add --over ros"):
-        scenarios_of(["home_errand"], ["official"])
+        load_suites(["home_errand"], ["official"])
     monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path))
     with pytest.raises(SettingsError, match="the official move_base is not there"):
-        scenarios_of(["home_errand"], ["official"], is_over_ros=True)
+        load_suites(["home_errand"], ["official"], is_over_ros=True)
     monkeypatch.setenv("ROS_PACKAGE_PATH", str(FOLDER.parent / "src"))
     with pytest.raises(SettingsError, match="the official move_base is not there"):
-        scenarios_of(["home_errand"], ["official"], is_over_ros=True)
+        load_suites(["home_errand"], ["official"], is_over_ros=True)
     package = "<package><name>move_base</name></package>"
     (tmp_path / "package.xml").write_text(package)
     monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path))
-    (scenario,), _ = scenarios_of(["home_errand"], ["official"], is_over_ros=True)
-    arguments = stage(scenario, 0, tmp_path)
+    (scenario,), _ = load_suites(["home_errand"], ["official"], is_over_ros=True)
+    arguments = write_launch_files(scenario, 0, tmp_path)
     assert arguments["move_base_pkg"] == "move_base"
     assert "planner" not in arguments
 
@@ -72,17 +72,17 @@ def test_the_official_move_base_plays_only_over_ros_and_only_where_it_is_install
 def test_the_way_is_as_long_whichever_planner_drives():
     ours = read_scenario(ERRAND)
     arena, official = ours.arena(0), replace(ours, planner=OFFICIAL, is_over_ros=True)
-    assert official.task.way(official, arena) == ours.task.way(ours, arena) > 5.0
+    assert official.task.reference_length(official, arena) == ours.task.reference_length(ours, arena) > 5.0
 
 
 def test_a_file_that_asks_for_the_official_move_base_is_not_played_in_one_process(tmp_path):
     file = tmp_path / "with_official.yaml"
     text = ERRAND.read_text().replace("../map", str(FOLDER.parent / "map"))
     file.write_text(text + "planner: {name: official}\n")
-    scenarios, complaints = scenarios_of([str(file)])
+    scenarios, complaints = load_suites([str(file)])
     assert not scenarios
     assert complaints == [f"{file}: planner official: that move_base is a node: add --over ros"]
-    (scenario,), _ = scenarios_of([str(file)], ["move_base_lite/MppiPlannerROS"])
+    (scenario,), _ = load_suites([str(file)], ["move_base_lite/MppiPlannerROS"])
     assert scenario.planner == "move_base_lite/MppiPlannerROS"
 
 
@@ -107,10 +107,10 @@ def test_a_run_folder_is_read_as_a_result(tmp_path, result, outcome):
     still = " 0 0 0 0 0.0 1.0\n"
     (tmp_path / "trajectory_true.tum").write_text(f"0.0 0.0{still}2.0 1.0{still}")
     (tmp_path / "trajectory_estimated.tum").write_text(f"1.0 0.75{still}")
-    play = _play_of(tmp_path, 300.0)
-    assert (play.outcome, play.reason) == (outcome, "said")
-    assert play.localization_error.tolist() == [0.25]
-    assert play.trajectory.tolist() == [[0.0, 0.0, 0.0, 0.0], [2.0, 1.0, 0.0, 0.0]]
+    trace = _read_trace(tmp_path, 300.0)
+    assert (trace.outcome, trace.reason) == (outcome, "said")
+    assert trace.localization_error.tolist() == [0.25]
+    assert trace.trajectory.tolist() == [[0.0, 0.0, 0.0, 0.0], [2.0, 1.0, 0.0, 0.0]]
 
 
 def test_what_nodes_do_after_the_end_is_none_of_the_run(tmp_path):
@@ -119,12 +119,12 @@ def test_what_nodes_do_after_the_end_is_none_of_the_run(tmp_path):
     poses = "".join(f"{stamp} {x} 0 0 0 0 0.0 1.0\n" for stamp, x in ((0.1, 0.0), (2.1, 1.0), (3.0, 1.0)))
     for name in ("true", "estimated"):
         (tmp_path / f"trajectory_{name}.tum").write_text(poses)
-    play = _play_of(tmp_path, 300.0)
-    assert play.trajectory[:, 0].tolist() == [0.1, 2.1]
-    assert play.localization_error.tolist() == [0.0, 0.0]
+    trace = _read_trace(tmp_path, 300.0)
+    assert trace.trajectory[:, 0].tolist() == [0.1, 2.1]
+    assert trace.localization_error.tolist() == [0.0, 0.0]
 
 
 def test_a_graph_that_never_ran_is_told_by_its_reason(tmp_path):
     (tmp_path / "result.json").write_text(json.dumps({"success": False, "reason": "no ROS master"}))
     with pytest.raises(SettingsError, match="no ROS master"):
-        _play_of(tmp_path, 300.0)
+        _read_trace(tmp_path, 300.0)

@@ -4,8 +4,8 @@ from pathlib import Path
 import pytest
 
 from laboratory.scenario import read_scenario
-from laboratory.scenario.seeds import seeds_of
-from laboratory.suites import FOLDER, scenarios_of
+from laboratory.scenario.seeds import parse_seeds
+from laboratory.suites import FOLDER, load_suites
 from planar import Pose2, SettingsError
 
 ROOT = FOLDER.parent
@@ -79,7 +79,7 @@ def test_a_scenario_that_cannot_be_played_is_named_and_the_others_are_played(tmp
     (tmp_path / "good.yaml").write_text(WHOLE.replace("ROOT", str(ROOT)))
     lost = WHOLE.replace("ROOT/map/home.world", "nowhere.world")
     (tmp_path / "lost.yaml").write_text(lost.replace("ROOT", str(ROOT)))
-    scenarios, complaints = scenarios_of([str(tmp_path)])
+    scenarios, complaints = load_suites([str(tmp_path)])
     assert [scenario.name for scenario in scenarios] == ["good"]
     assert len(complaints) == 2
     assert "lost.yaml" in complaints[0] and "nowhere.world" in complaints[0]
@@ -88,13 +88,13 @@ def test_a_scenario_that_cannot_be_played_is_named_and_the_others_are_played(tmp
 
 def test_a_suite_that_is_not_there_is_refused():
     with pytest.raises(SettingsError, match="nonsense: neither a file nor a folder nor one of scenarios"):
-        scenarios_of(["nonsense"])
+        load_suites(["nonsense"])
 
 
 @pytest.mark.parametrize("planner", ["Nonsense", "no_such.module/Nonsense"])
 def test_a_planner_that_is_not_there_is_refused_before_anything_is_played(planner):
     with pytest.raises(SettingsError, match=planner):
-        scenarios_of(["home_errand"], ["move_base_lite/MppiPlannerROS", planner])
+        load_suites(["home_errand"], ["move_base_lite/MppiPlannerROS", planner])
 
 
 def test_a_digest_tells_scenarios_apart_by_what_they_say_and_not_by_their_names(tmp_path):
@@ -121,13 +121,13 @@ def test_a_digest_changes_with_a_file_of_the_scenario(tmp_path):
 
 @pytest.mark.parametrize("path", sorted(FOLDER.glob("home*.yaml")), ids=lambda path: path.stem)
 def test_the_scenarios_of_the_project_can_be_played(path):
-    scenarios, complaints = scenarios_of([str(path)])
+    scenarios, complaints = load_suites([str(path)])
     assert complaints == [] and len(scenarios) == 1
 
 
 def test_seeds_are_written_as_people_do():
-    assert seeds_of("7") == (7,)
-    assert seeds_of("0-3,2,9") == (0, 1, 2, 3, 9)
+    assert parse_seeds("7") == (7,)
+    assert parse_seeds("0-3,2,9") == (0, 1, 2, 3, 9)
     for nonsense in ("", "a", "3-1", "-1", "1-", "0-99999999"):
         with pytest.raises(SettingsError, match="seeds must be like"):
-            seeds_of(nonsense)
+            parse_seeds(nonsense)

@@ -7,22 +7,22 @@ import pytest
 import yaml
 from optuna.distributions import FloatDistribution
 
-from laboratory.results.result import Result
+from laboratory.results.result import RunResult
 from laboratory.scenario import read_scenario
-from laboratory.search.cases import Case, Ingredients, Noise
-from laboratory.search.falsifying import ease, shrunk
+from laboratory.search.case_file import scenario_text, write_case
+from laboratory.search.cases import Case, CaseSpace, NoiseProfile
+from laboratory.search.falsification import robustness, shrink_case
 from laboratory.search.study import BATCH, Study
-from laboratory.search.tuning import cost, nested, read_space, text_of, with_values
-from laboratory.search.writing import scenario_text, write_case
+from laboratory.search.tuning import cost, nested, parameter_file_text, read_space, with_values
 from laboratory.suites import FOLDER
-from laboratory.worlds.boxes import TO_OTHERS
-from laboratory.worlds.people import Walk
+from laboratory.worlds.boxes import BOX_SPACING
+from laboratory.worlds.people import PedestrianRoute
 from planar import Pose2, SettingsError
 from sim_bridge.faults import Fault
 
 ERRAND = FOLDER / "home_errand.yaml"
 SPACE = {"x": FloatDistribution(-2.0, 2.0), "y": FloatDistribution(-2.0, 2.0)}
-BOX, WALK = Pose2(1.0, 2.0, 0.5), Walk(((1.0, 1.0), (2.0, 2.0)), 0.8)
+BOX, WALK = Pose2(1.0, 2.0, 0.5), PedestrianRoute(((1.0, 1.0), (2.0, 2.0)), 0.8)
 FAULT = Fault("scan_noisy", 2.0, 4.0, 0.1)
 
 
@@ -67,14 +67,14 @@ def test_a_journal_that_is_none_is_named(tmp_path):
 
 def test_cases_are_as_hard_as_allowed_and_no_harder():
     base = read_scenario(ERRAND)
-    ingredients = Ingredients(boxes=3, people=2, faults=1)
-    values = {name: 0.4 for name in ingredients.space()}
+    case_space = CaseSpace(boxes=3, people=2, faults=1)
+    values = {name: 0.4 for name in case_space.space()}
     values.update({"seed": 7, "noise": "bad", "fault0/kind": "scan_nan", "fault0/start": 3.0})
-    case = ingredients.case(base, {**values, "fault0/seconds": 2.0})
+    case = case_space.case(base, {**values, "fault0/seconds": 2.0})
     boxes = case.of(Pose2)
-    assert [len(case.of(kind)) for kind in (Pose2, Walk, Fault, Noise)] == [3, 2, 1, 1]
+    assert [len(case.of(kind)) for kind in (Pose2, PedestrianRoute, Fault, NoiseProfile)] == [3, 2, 1, 1]
     gaps = [a.distance_to(b) for number, a in enumerate(boxes) for b in boxes[:number]]
-    assert min(gaps) >= TO_OTHERS - 0.01, "a way is left between boxes, also if all are wanted in one place"
+    assert min(gaps) >= BOX_SPACING - 0.01, "a way is left between boxes, also if all are wanted in one place"
     scenario = case.scenario(base)
     assert scenario.simulation.encoder_scale > base.simulation.encoder_scale
     assert scenario.simulation.scan_rate == base.simulation.scan_rate
@@ -85,32 +85,32 @@ def test_cases_are_as_hard_as_allowed_and_no_harder():
 
 
 def test_only_the_pieces_that_it_takes_are_left():
-    case = Case(4, (BOX, WALK, FAULT, Noise("high")))
-    tried = []
+    case = Case(4, (BOX, WALK, FAULT, NoiseProfile("high")))
+    attempts = []
 
-    def fails(less):
-        tried.append(less)
-        return WALK in less.pieces and Noise("high") in less.pieces
+    def fails(smaller):
+        attempts.append(smaller)
+        return WALK in smaller.elements and NoiseProfile("high") in smaller.elements
 
-    assert shrunk(case, fails).pieces == (WALK, Noise("high"))
-    assert len(tried) < 12
-    assert shrunk(case, lambda less: True).pieces == ()
-    assert shrunk(case, lambda less: False) == case
+    assert shrink_case(case, fails).elements == (WALK, NoiseProfile("high"))
+    assert len(attempts) < 12
+    assert shrink_case(case, lambda smaller: True).elements == ()
+    assert shrink_case(case, lambda smaller: False) == case
 
 
 def test_a_failure_is_harder_than_any_success_and_an_error_is_none():
-    won = Result("d", 1, "v", "success", "", seconds=30.0, clearance=0.3, localization_max=0.1)
+    won = RunResult("d", 1, "v", "success", "", seconds=30.0, clearance=0.3, localization_max=0.1)
     close = replace(won, clearance=0.2)
-    assert ease(close, 600.0) < ease(won, 600.0)
-    assert ease(replace(won, seconds=500.0), 600.0) < ease(won, 600.0)
-    assert ease(replace(won, outcome="timeout"), 600.0) < 0.0 < ease(close, 600.0)
-    assert ease(replace(won, outcome="error"), 600.0) >= ease(won, 600.0)
+    assert robustness(close, 600.0) < robustness(won, 600.0)
+    assert robustness(replace(won, seconds=500.0), 600.0) < robustness(won, 600.0)
+    assert robustness(replace(won, outcome="timeout"), 600.0) < 0.0 < robustness(close, 600.0)
+    assert robustness(replace(won, outcome="error"), 600.0) >= robustness(won, 600.0)
 
 
 def test_a_case_is_written_as_a_scenario_that_is_played_alike(tmp_path):
     base = read_scenario(ERRAND)
-    case = Case(4, (BOX, WALK, FAULT, Noise("high")))
-    path = write_case(base, case, Result("d", 4, "v", "timeout", "too late"), tmp_path)
+    case = Case(4, (BOX, WALK, FAULT, NoiseProfile("high")))
+    path = write_case(base, case, RunResult("d", 4, "v", "timeout", "too late"), tmp_path)
     again = read_scenario(path)
     assert again.digest() == case.scenario(base).digest()
     assert again.seeds == (4,) and "too late" in again.about
@@ -129,13 +129,13 @@ def test_parameters_are_nested_as_move_base_has_them(tmp_path):
     }
     values = {"Planner/speed": 0.2, "Planner/Inner/weight": 1.5, "patience": 2.0}
     assert nested(values) == {"Planner": {"speed": 0.2, "Inner": {"weight": 1.5}}, "patience": 2.0}
-    assert yaml.safe_load(text_of(values)) == nested(values)
+    assert yaml.safe_load(parameter_file_text(values)) == nested(values)
 
 
 def test_a_space_that_is_none_is_told_with_line_and_key(tmp_path):
     path = tmp_path / "space.yaml"
     path.write_text("Planner:\n  speed: [0.5, 0.1]\n")
-    with pytest.raises(SettingsError, match=r"space.yaml:2: Planner.speed must be two numbers, the lesser"):
+    with pytest.raises(SettingsError, match=r"space.yaml:2: Planner.speed must be two numbers, the smallerer"):
         read_space(path)
 
 
@@ -151,6 +151,6 @@ def test_the_space_that_is_tuned_by_default_is_one_of_parameters_that_there_are(
 
 def test_a_failed_run_costs_more_than_any_that_succeeds():
     base = replace(read_scenario(ERRAND), seconds=100.0)
-    won = Result("d", 1, "v", "success", "", seconds=30.0)
+    won = RunResult("d", 1, "v", "success", "", seconds=30.0)
     assert cost(base, [won, replace(won, seconds=40.0)]) == 35.0
     assert cost(base, [won, replace(won, outcome="collision", seconds=5.0)]) == 115.0

@@ -3,18 +3,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from laboratory.evaluation import Evaluated
+from laboratory.evaluation import EvaluatedScenario
+from laboratory.report import regressions, summary_lines, violated_requirements
 from laboratory.results.export import export
-from laboratory.results.result import Result
+from laboratory.results.result import RunResult
 from laboratory.scenario import read_scenario
 from laboratory.statistics.comparison import compare
-from laboratory.statistics.requirement import requirement_from
-from laboratory.statistics.summary import mean, share, success_by_way, summary
+from laboratory.statistics.requirement import parse_requirement
+from laboratory.statistics.summary import mean, share, success_weighted_by_path_length, summary
 from laboratory.suites import FOLDER
-from laboratory.telling import broken_rules, lines_of, regressions
 from planar import SettingsError
 
-WON = Result("d", 0, "v", "success", "", seconds=20.0, driven=10.0, way=8.0, clearance=0.3, turning=0.5)
+WON = RunResult("d", 0, "v", "success", "", seconds=20.0, driven=10.0, way=8.0, clearance=0.3, turning=0.5)
 
 
 def runs(outcomes, **others):
@@ -49,9 +49,9 @@ def test_figures_of_runs():
 
 
 def test_success_by_way_is_never_more_than_one():
-    assert success_by_way(replace(WON, driven=7.0)) == 1.0
-    assert success_by_way(replace(WON, outcome="timeout")) == 0.0
-    assert success_by_way(replace(WON, way=None)) is None
+    assert success_weighted_by_path_length(replace(WON, driven=7.0)) == 1.0
+    assert success_weighted_by_path_length(replace(WON, outcome="timeout")) == 0.0
+    assert success_weighted_by_path_length(replace(WON, way=None)) is None
 
 
 def test_planners_are_compared_on_the_same_seeds_by_an_exact_test():
@@ -79,24 +79,24 @@ def test_a_planner_that_is_always_a_second_slower_is_worse():
 
 def test_a_requirement_is_read_and_held_against_figures():
     figures = summary(runs(["success"] * 98 + ["timeout"] * 2)).figures
-    assert requirement_from("success >= 0.98").is_met(figures)
-    assert not requirement_from("success>0.98").is_met(figures)
-    assert requirement_from("collision <= 0").is_met(figures)
-    assert not requirement_from("localization < 1").is_met(figures)
+    assert parse_requirement("success >= 0.98").is_met(figures)
+    assert not parse_requirement("success>0.98").is_met(figures)
+    assert parse_requirement("collision <= 0").is_met(figures)
+    assert not parse_requirement("localization < 1").is_met(figures)
     with pytest.raises(SettingsError, match="sucess is not known; did you mean success"):
-        requirement_from("sucess >= 0.9")
+        parse_requirement("sucess >= 0.9")
     with pytest.raises(SettingsError, match='must be like "success >= 0.99"'):
-        requirement_from("always")
+        parse_requirement("always")
 
 
 def evaluated(outcomes, planner="", **others):
     scenario = read_scenario(FOLDER / "home_errand.yaml").with_planner(planner)
-    return Evaluated(scenario, "d", runs(outcomes, **others))
+    return EvaluatedScenario(scenario, "d", runs(outcomes, **others))
 
 
 def test_a_broken_rule_names_its_scenario():
-    rules = [requirement_from("success >= 1")]
-    assert broken_rules([evaluated(["timeout"])], rules) == ["home_errand: not success >= 1"]
+    rules = [parse_requirement("success >= 1")]
+    assert violated_requirements([evaluated(["timeout"])], rules) == ["home_errand: not success >= 1"]
 
 
 def test_a_version_that_is_worse_than_another_is_named():
@@ -107,11 +107,11 @@ def test_a_version_that_is_worse_than_another_is_named():
 
 
 def test_the_terminal_tells_figures_and_how_planners_compare():
-    lines = lines_of([evaluated(["success"] * 4), evaluated(["success"] * 3 + ["collision"], "other")])
+    lines = summary_lines([evaluated(["success"] * 4), evaluated(["success"] * 3 + ["collision"], "other")])
     assert lines[0] == "home_errand: 4 runs: 4 success"
     assert "home_errand [other]: 4 runs: 3 success, 1 collision" in lines
     assert lines[-1] == "  beside home_errand: success: cannot tell (+0 −1, p 1)"
-    assert lines_of([evaluated([])]) == ["home_errand: 0 runs: none played"]
+    assert summary_lines([evaluated([])]) == ["home_errand: 0 runs: none played"]
 
 
 def test_results_are_exported_as_tables(tmp_path):

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from laboratory.check import CHECKS, KITS
-from laboratory.generators.crossings import Crossings
-from laboratory.generators.fields import Fields
+from laboratory.generators.crossings import CrossingCylinders
+from laboratory.generators.fields import CylinderFields
 from laboratory.generators.homes import Homes
 from laboratory.worlds.solids import FLOOR, wall
 from laboratory.worlds.source import Arena
@@ -52,7 +52,9 @@ def module(monkeypatch):
     monkeypatch.setitem(sys.modules, "own.erring", sys.modules[__name__])
 
 
-@pytest.mark.parametrize(("source", "check"), product((Homes(), Fields(), Crossings()), CHECKS))
+@pytest.mark.parametrize(
+    ("source", "check"), product((Homes(), CylinderFields(), CrossingCylinders()), CHECKS)
+)
 def test_a_generator_of_the_project_passes(source, check):
     check(source)
 

@@ -8,13 +8,13 @@ import gymnasium
 
 # Name, class, and seconds of an episode, at so many control periods a second.
 _ENVIRONMENTS = (
-    ("HomeService-v0", "environments:HomeService", 120, 10),
-    ("PointGoal-v0", "environments:PointGoal", 60, 10),
-    ("BARN-v0", "environments:Barn", 100, 10),
-    ("DynaBARN-v0", "environments:Dynabarn", 100, 10),
-    ("Follow-v0", "environments:Follow", 60, 10),
-    ("Explore-v0", "environments:Explore", 300, 10),
-    ("TurtleBot3Stage-v0", "turtlebot3_stage:TurtleBot3Stage", 100, 5),
+    ("HomeService-v0", "environments:HomeServiceEnv", 120, 10),
+    ("PointGoal-v0", "environments:PointGoalEnv", 60, 10),
+    ("BARN-v0", "environments:BarnEnv", 100, 10),
+    ("DynaBARN-v0", "environments:DynabarnEnv", 100, 10),
+    ("Follow-v0", "environments:FollowEnv", 60, 10),
+    ("Explore-v0", "environments:ExploreEnv", 300, 10),
+    ("TurtleBot3Stage-v0", "turtlebot3_stage:TurtleBot3StageEnv", 100, 5),
 )
 NAMES = tuple(name for name, *_ in _ENVIRONMENTS)
 

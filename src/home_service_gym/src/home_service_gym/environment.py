@@ -9,22 +9,22 @@ import gymnasium
 import numpy as np
 from gymnasium import spaces
 
-from home_service_gym.playground import Moment, Playground, lidar_of
-from home_service_gym.surroundings import Surroundings
-from home_service_gym.task import COLLISION, PERIOD, Task
-from home_service_gym.viewing import MODES, Viewer
+from home_service_gym.episode_simulation import EpisodeSimulation, EpisodeState, lidar_profile
+from home_service_gym.people_and_map import PeopleAndMapTask
+from home_service_gym.rendering import MODES, EpisodeRenderer
+from home_service_gym.task import COLLISION_REWARD, PERIOD_REWARD, EpisodeTask
 from laboratory.scenario import Scenario, read_scenario
 from laboratory.suites import FOLDER
 from planar import SettingsError, Twist2
 from sim_bridge import robot_named
 
 # Playgrounds that an environment keeps built, and control periods a second.
-KEPT, RATE = 16, 10
+MAX_KEPT_WORLDS, RATE = 16, 10
 # Odometry tells at most so many times a robot's greatest speed; one that slips or is bumped may be faster.
-BUMPED = 2.0
+MAX_SPEED_FACTOR = 2.0
 
 
-def scenario_of(name: str) -> Scenario:
+def load_scenario(name: str) -> Scenario:
     """A scenario by its name in scenarios/, or by its file. Raises SettingsError."""
     path = Path(name)
     scenario = read_scenario(path if path.suffix == ".yaml" else FOLDER / f"{name}.yaml")
@@ -50,24 +50,24 @@ class TaskEnv(gymnasium.Env):
     def __init__(
         self,
         scenario: Scenario,
-        task: Task,
+        task: EpisodeTask,
         render_mode: Optional[str] = None,
         people: int = 0,
         has_map: bool = False,
     ):
         self.render_mode = render_mode
         self._scenario = scenario
-        self._task: Task = Surroundings(task, people, has_map) if people or has_map else task
+        self._task: EpisodeTask = PeopleAndMapTask(task, people, has_map) if people or has_map else task
         self._robot = robot_named(scenario.robot)
-        self._viewer = Viewer(render_mode, self._robot, RATE)
-        self._playgrounds: OrderedDict[int, Playground] = OrderedDict()
-        self._playground: Optional[Playground] = None
-        self._moment: Optional[Moment] = None
-        lidar, drive = lidar_of(self._robot), self._robot.drive
-        self._farthest = lidar.range_max
-        self._most_v, self._most_omega = drive.max_speed, drive.max_turn_rate
-        fastest = np.array((drive.max_speed, drive.max_turn_rate), np.float32) * BUMPED
-        self._fastest = fastest.tolist()
+        self._renderer = EpisodeRenderer(render_mode, self._robot, RATE)
+        self._simulations: OrderedDict[int, EpisodeSimulation] = OrderedDict()
+        self._simulation: Optional[EpisodeSimulation] = None
+        self._state: Optional[EpisodeState] = None
+        lidar, drive = lidar_profile(self._robot), self._robot.drive
+        self._range_max = lidar.range_max
+        self._max_v, self._max_omega = drive.max_speed, drive.max_turn_rate
+        fastest = np.array((drive.max_speed, drive.max_turn_rate), np.float32) * MAX_SPEED_FACTOR
+        self._max_velocity = fastest.tolist()
         self.action_space = spaces.Box(-1.0, 1.0, (2,), np.float32)
         self.observation_space = spaces.Dict(
             {
@@ -82,74 +82,76 @@ class TaskEnv(gymnasium.Env):
     ) -> Tuple[Dict[str, np.ndarray], Dict[str, Any]]:
         super().reset(seed=seed)
         number = int((options or {}).get("seed", self.np_random.choice(self._scenario.seeds)))
-        self._playground = self._playground_of(number)
-        beginning = self._task.begin(self._playground, self.np_random)
+        self._simulation = self._simulation_for(number)
+        episode_start = self._task.reset(self._simulation, self.np_random)
         noise = int(self.np_random.integers(2**31))
-        self._moment = self._playground.restart(noise, beginning.start, beginning.trajectories)
-        self._show_people()
-        return self._observation(), {"world": self._playground.arena.title}
+        self._state = self._simulation.reset(noise, episode_start.start, episode_start.trajectories)
+        self._render_if_live()
+        return self._observation(), {"world": self._simulation.arena.title}
 
     def step(self, action: np.ndarray) -> Tuple[Dict[str, np.ndarray], float, bool, bool, Dict[str, Any]]:
-        assert self._playground is not None, "reset comes before step"
+        assert self._simulation is not None, "reset comes before step"
         v, omega = (min(max(share, -1.0), 1.0) for share in np.asarray(action).tolist())  # NaN stays NaN
-        self._moment = self._playground.advance(Twist2(v * self._most_v, omega * self._most_omega))
-        judgement = self._task.judge(self._moment)
-        self._show_people()
-        reward, outcome = judgement.reward, judgement.outcome
-        if self._moment.touched:
-            reward, outcome = PERIOD + COLLISION, "collision"
+        self._state = self._simulation.step(Twist2(v * self._max_v, omega * self._max_omega))
+        task_step = self._task.step(self._state)
+        self._render_if_live()
+        reward, outcome = task_step.reward, task_step.outcome
+        if self._state.touched:
+            reward, outcome = PERIOD_REWARD + COLLISION_REWARD, "collision"
         info: Dict[str, Any] = {}
         if outcome:
             info = {"outcome": outcome, "is_success": outcome == "success"}
             if outcome == "collision":
-                info["touched"] = self._moment.touched
+                info["touched"] = self._state.touched
         return self._observation(), float(reward), bool(outcome), False, info
 
     @property
-    def moment(self) -> Moment:
+    def state(self) -> EpisodeState:
         """What is so now, also what is not observed."""
-        assert self._moment is not None, "reset comes first"
-        return self._moment
+        assert self._state is not None, "reset comes first"
+        return self._state
 
     def render(self) -> Optional[np.ndarray]:  # type: ignore[override]
-        if self._playground is None or self._moment is None:
+        if self._simulation is None or self._state is None:
             return None
-        return self._viewer.show(self._playground, self._moment, self._task.marks())
+        return self._renderer.show(self._simulation, self._state, self._task.overlay())
 
     def close(self) -> None:
-        for playground in self._playgrounds.values():
-            playground.close()
-        self._playgrounds.clear()
-        self._viewer.close()
-        self._playground = self._moment = None
+        for simulation in self._simulations.values():
+            simulation.close()
+        self._simulations.clear()
+        self._renderer.close()
+        self._simulation = self._state = None
 
-    def _show_people(self) -> None:
-        if self._viewer.is_live:
+    def _render_if_live(self) -> None:
+        if self._renderer.is_live:
             self.render()
 
-    def _playground_of(self, seed: int) -> Playground:
+    def _simulation_for(self, seed: int) -> EpisodeSimulation:
         """That of the world of a seed, built if it is not among the last that were used."""
         played = self._scenario
         differs = bool(played.boxes or played.doors or played.people.count)
         key = seed if differs else played.world.arena_number(seed)
-        playground = self._playgrounds.pop(key, None)
-        if playground is None:
+        simulation = self._simulations.pop(key, None)
+        if simulation is None:
             arena = self._scenario.arena(seed)
             bodies = (*arena.world.bodies, *self._task.bodies())
             arena = replace(arena, world=replace(arena.world, bodies=bodies))
-            playground = Playground(arena, self._robot, self._scenario.simulation, self._scenario.start, RATE)
-        self._playgrounds[key] = playground
-        if len(self._playgrounds) > KEPT:
-            self._playgrounds.popitem(last=False)[1].close()
-        return playground
+            simulation = EpisodeSimulation(
+                arena, self._robot, self._scenario.simulation, self._scenario.start, RATE
+            )
+        self._simulations[key] = simulation
+        if len(self._simulations) > MAX_KEPT_WORLDS:
+            self._simulations.popitem(last=False)[1].close()
+        return simulation
 
     def _observation(self) -> Dict[str, np.ndarray]:
-        assert self._moment is not None
-        twist = self._moment.twist
-        told = zip((twist.v, twist.omega), self._fastest)
+        assert self._state is not None
+        twist = self._state.twist
+        told = zip((twist.v, twist.omega), self._max_velocity)
         velocity = [max(-fastest, min(speed, fastest)) for speed, fastest in told]
         return {
-            "scan": self._moment.ranges(self._farthest),
+            "scan": self._state.ranges(self._range_max),
             "velocity": np.array(velocity, dtype=np.float32),
-            **self._task.observe(self._moment),
+            **self._task.observation(self._state),
         }

@@ -9,9 +9,9 @@ import gymnasium
 import numpy as np
 from gymnasium import spaces
 
-from home_service_gym.playground import Moment, Playground
-from home_service_gym.task import Marks
-from home_service_gym.viewing import MODES, Viewer
+from home_service_gym.episode_simulation import EpisodeSimulation, EpisodeState
+from home_service_gym.rendering import MODES, EpisodeRenderer
+from home_service_gym.task import Overlay
 from laboratory.suites import ROOT
 from laboratory.worlds.source import Arena
 from planar import Pose2, SettingsError, Twist2, wrap
@@ -22,18 +22,18 @@ FOLDER = ROOT / "src/compat/turtlebot3_gazebo"
 # Control periods a second, beams that the network sees, and how fast the robot is driven, m/s and rad/s.
 RATE, BEAMS, SPEED, TURN = 5, 24, 0.15, 1.5
 # Metres: a beam shorter than this is a collision, the goal is reached, something is too near for comfort.
-TOUCH, ARRIVED, NEAR = 0.13, 0.2, 0.5
+COLLISION_DISTANCE, GOAL_RADIUS, NEAR_DISTANCE = 0.13, 0.2, 0.5
 # Where goals are of the first three stages, m, and of the fourth.
-HALF, TENTHS, OFF = 1.2, 10.0, 0.4
+HALF, TENTHS, POST_CLEARANCE = 1.2, 10.0, 0.4
 POSTS_XY = ((0.0, 0.0), (0.6, 0.6), (0.6, -0.6), (-0.6, 0.6), (-0.6, -0.6))
 GOALS_XY = (
     *((0.6, 0.0), (1.9, -0.5), (0.5, -1.9), (0.2, 1.5), (-0.8, -0.9), (-1.0, 1.0), (-1.9, 1.1)),
     *((0.5, -1.5), (2.0, 1.5), (0.5, 1.8), (0.0, -1.0), (-0.1, 1.6), (-2.0, -0.8)),
 )
 # Seconds in which the posts of stage 3 go round once, and corners that their circles are told by.
-ROUND, CORNERS = 40.0, 48
+CIRCLE_SECONDS, CORNERS = 40.0, 48
 # The two of stage 4: s, and m from where they stand.
-WALKS = {
+WALKER_KEYFRAMES = {
     "obstacle_1": (
         *((0, 0.0, 0.0), (10, -0.5, -1.0), (50, -3.5, -1.0), (70, -3.7, -3.0), (90, -3.5, -1.0)),
         *((130, -0.5, -1.0), (140, 0.0, 0.0), (160, 0.0, 0.0)),
@@ -47,7 +47,7 @@ WALKS = {
 
 
 @dataclass(frozen=True)
-class Worth:
+class StageRewards:
     """What a goal, a collision, and being near to something for a period are worth."""
 
     goal: float
@@ -55,11 +55,11 @@ class Worth:
     near: float
 
 
-EASY, HARD = Worth(200.0, -200.0, 0.0), Worth(1000.0, -500.0, -5.0)
+EASY, HARD = StageRewards(200.0, -200.0, 0.0), StageRewards(1000.0, -500.0, -5.0)
 STARTS = {1: Pose2(), 2: Pose2(), 3: Pose2(), 4: Pose2(-0.7, 0.0)}
 
 
-class TurtleBot3Stage(gymnasium.Env):
+class TurtleBot3StageEnv(gymnasium.Env):
     """``stage`` 1: an empty square, 2: four posts, 3: they go round, 4: walls and two that walk.
 
     The observation is that of the tutorial: 24 beams (m), bearing of the goal (rad), its distance (m), and
@@ -73,11 +73,11 @@ class TurtleBot3Stage(gymnasium.Env):
         if stage not in STARTS:
             raise SettingsError(f"stage must be 1, 2, 3 or 4, got {stage!r}")
         self.render_mode, self._stage = render_mode, stage
-        self._worth = EASY if stage == 1 else HARD
+        self._rewards = EASY if stage == 1 else HARD
         robot, start = robot_named("turtlebot3_burger"), STARTS[stage]
-        self._viewer = Viewer(render_mode, robot, RATE)
-        self._playground = Playground(arena_of(stage), robot, SimulationSettings(), start, RATE)
-        self._moment: Optional[Moment] = None
+        self._renderer = EpisodeRenderer(render_mode, robot, RATE)
+        self._simulation = EpisodeSimulation(arena_of(stage), robot, SimulationSettings(), start, RATE)
+        self._state: Optional[EpisodeState] = None
         farthest = [3.5] * BEAMS + [math.pi, 10.0] + ([3.5, BEAMS - 1.0] if stage > 1 else [])
         high = np.array(farthest, dtype=np.float32)
         low = np.where(np.arange(len(high)) == BEAMS, -high, np.float32(0.0))
@@ -88,50 +88,58 @@ class TurtleBot3Stage(gymnasium.Env):
         self, *, seed: Optional[int] = None, options: Optional[Dict[str, Any]] = None
     ) -> Tuple[np.ndarray, Dict[str, Any]]:
         super().reset(seed=seed)
-        self._moment = self._playground.restart(int(self.np_random.integers(2**31)), STARTS[self._stage])
+        self._state = self._simulation.reset(int(self.np_random.integers(2**31)), STARTS[self._stage])
         self._set_goal(Pose2(*GOALS_XY[0]))
-        self._show_people()
+        self._render_if_live()
         return self._observation(), {"goal": (self._goal.x, self._goal.y)}
 
     def step(self, action: Any) -> Tuple[np.ndarray, float, bool, bool, Dict[str, Any]]:
         omega = (2 - int(action)) * TURN * 0.5
-        self._moment = moment = self._playground.advance(Twist2(SPEED, omega))
-        self._show_people()
-        seen = self._observation()
-        if moment.touched or seen[:BEAMS].min() < TOUCH:
-            return seen, self._worth.collision, True, False, {"outcome": "collision", "is_success": False}
-        if seen[BEAMS + 1] < ARRIVED:
+        self._state = state = self._simulation.step(Twist2(SPEED, omega))
+        self._render_if_live()
+        observation = self._observation()
+        if state.touched or observation[:BEAMS].min() < COLLISION_DISTANCE:
+            return (
+                observation,
+                self._rewards.collision,
+                True,
+                False,
+                {"outcome": "collision", "is_success": False},
+            )
+        if observation[BEAMS + 1] < GOAL_RADIUS:
             self._set_goal(self._next_goal())
-            return seen, self._worth.goal, False, False, {"reached": True}
-        return seen, self._reward(seen, int(action)), False, False, {}
+            return observation, self._rewards.goal, False, False, {"reached": True}
+        return observation, self._reward(observation, int(action)), False, False, {}
 
     def render(self) -> Optional[np.ndarray]:  # type: ignore[override]
-        if self._moment is None:
+        if self._state is None:
             return None
-        trajectories = self._playground.arena.world.trajectories
-        return self._viewer.show(self._playground, self._moment, Marks((self._goal, ARRIVED), trajectories))
+        trajectories = self._simulation.arena.world.trajectories
+        return self._renderer.show(
+            self._simulation, self._state, Overlay((self._goal, GOAL_RADIUS), trajectories)
+        )
 
     def close(self) -> None:
-        self._viewer.close()
-        self._playground.close()
+        self._renderer.close()
+        self._simulation.close()
 
-    def _show_people(self) -> None:
-        if self._viewer.is_live:
+    def _render_if_live(self) -> None:
+        if self._renderer.is_live:
             self.render()
 
-    def _reward(self, seen: np.ndarray, action: int) -> float:
+    def _reward(self, observation: np.ndarray, action: int) -> float:
         """The more the action turns to the goal, and the farther that still is, the better."""
-        angle = -math.pi / 4.0 + float(seen[BEAMS]) + math.pi / 8.0 * action + math.pi / 2.0
+        angle = -math.pi / 4.0 + float(observation[BEAMS]) + math.pi / 8.0 * action + math.pi / 2.0
         turned = (0.25 + 0.5 * angle % (2.0 * math.pi) / math.pi) % 1.0
         facing = 1.0 - 4.0 * abs(0.5 - turned)
-        rate = 2.0 ** (float(seen[BEAMS + 1]) / self._first_distance)
-        near = self._worth.near if seen[:BEAMS].min() < NEAR else 0.0
+        rate = 2.0 ** (float(observation[BEAMS + 1]) / self._first_distance)
+        near = self._rewards.near if observation[:BEAMS].min() < NEAR_DISTANCE else 0.0
         return round(5.0 * facing, 2) * rate + near
 
     def _set_goal(self, goal: Pose2) -> None:
-        assert self._moment is not None
+        assert self._state is not None
         self._goal = goal
-        self._first_distance = max(self._moment.base_in_world.distance_to(goal), ARRIVED)
+        self._first_distance = max(self._state.base_in_world.distance_to(goal), GOAL_RADIUS)
 
     def _next_goal(self) -> Pose2:
         """Another one, off the posts."""
@@ -142,14 +150,14 @@ class TurtleBot3Stage(gymnasium.Env):
                     return goal
                 continue
             x, y = (self.np_random.integers(-12, 13, 2) / TENTHS).tolist()
-            is_free = all(max(abs(x - px), abs(y - py)) > OFF for px, py in POSTS_XY)
+            is_free = all(max(abs(x - px), abs(y - py)) > POST_CLEARANCE for px, py in POSTS_XY)
             if is_free and max(abs(x - self._goal.x), abs(y - self._goal.y)) >= 1.0:
                 return Pose2(x, y)
 
     def _observation(self) -> np.ndarray:
-        assert self._moment is not None
-        base, scan = self._moment.base_in_world, self._moment.scan
-        beams = self._moment.ranges(3.5, each=len(scan.ranges) // BEAMS)
+        assert self._state is not None
+        base, scan = self._state.base_in_world, self._state.scan
+        beams = self._state.ranges(3.5, each=len(scan.ranges) // BEAMS)
         x, y = self._goal.x - base.x, self._goal.y - base.y
         told = [wrap(math.atan2(y, x) - base.yaw), min(math.hypot(x, y), 10.0)]
         if self._stage > 1:
@@ -161,18 +169,18 @@ class TurtleBot3Stage(gymnasium.Env):
 def arena_of(stage: int) -> Arena:
     """The world of a stage, with what moves in it."""
     world = load_world(FOLDER / f"worlds/turtlebot3_stage_{stage}.world", [FOLDER / "models"])
-    trajectories = _courses_of(stage, {body.name: body.pose_in_world[:2, 3] for body in world.bodies})
-    moving = {course.link for course in trajectories}
+    trajectories = _trajectories_of(stage, {body.name: body.pose_in_world[:2, 3] for body in world.bodies})
+    moving = {trajectory.link for trajectory in trajectories}
     bodies = tuple(replace(body, is_kinematic=body.name in moving) for body in world.bodies)
     return Arena(replace(world, bodies=bodies, trajectories=trajectories), None, f"stage {stage}")
 
 
-def _courses_of(stage: int, places_xy: Dict[str, np.ndarray]) -> Tuple[ScriptedTrajectory, ...]:
+def _trajectories_of(stage: int, places_xy: Dict[str, np.ndarray]) -> Tuple[ScriptedTrajectory, ...]:
     if stage == 3:
         angles = np.linspace(0.0, 2.0 * math.pi, CORNERS + 1)
         turns = np.array([[np.cos(angles), np.sin(angles)], [-np.sin(angles), np.cos(angles)]])
         posts = {name: xy for name, xy in places_xy.items() if name.startswith("obstacle_")}
-        times = np.linspace(0.0, ROUND, CORNERS + 1)
+        times = np.linspace(0.0, CIRCLE_SECONDS, CORNERS + 1)
         return tuple(
             ScriptedTrajectory(name, times, np.einsum("i,ijk->kj", xy, turns)) for name, xy in posts.items()
         )
@@ -181,6 +189,6 @@ def _courses_of(stage: int, places_xy: Dict[str, np.ndarray]) -> Tuple[ScriptedT
             ScriptedTrajectory(
                 f"{name}::link", np.array(walk)[:, 0], places_xy[f"{name}::link"] + np.array(walk)[:, 1:]
             )
-            for name, walk in WALKS.items()
+            for name, walk in WALKER_KEYFRAMES.items()
         )
     return ()

@@ -8,7 +8,7 @@ from typing import Any, Tuple
 
 import numpy as np
 
-from laboratory.worlds.own import CONTRACT, OwnWorlds, kind_named
+from laboratory.worlds.custom import CONTRACT, CustomWorlds, load_generator
 from laboratory.worlds.source import Arena, WorldSource
 from planar import FREE
 from planar.contract_check import CheckSuite, expect, plugin_finder, run_checks
@@ -23,17 +23,17 @@ def gives_a_world_for_each_seed(source: WorldSource) -> None:
     for seed in SEEDS:
         arena = source.arena(seed)
         expect(bool(arena.world.bodies), f"seed {seed}: a world without a floor")
-        _seen(arena)
+        _first_scans(arena)
 
 
-def repeats_itself(source: WorldSource) -> None:
+def is_deterministic(source: WorldSource) -> None:
     """All chance comes from the seed: the same one gives the same world."""
     for seed in SEEDS:
         first, _, second = source.arena(seed), source.arena(seed + 1), source.arena(seed)
-        expect(_told(first) == _told(second), f"seed {seed}: another world the second time")
+        expect(_fingerprint(first) == _fingerprint(second), f"seed {seed}: another world the second time")
 
 
-def shows_its_places(source: WorldSource) -> None:
+def places_are_free(source: WorldSource) -> None:
     """Its places are on free floor of the map that the robot is given."""
     for seed in SEEDS:
         arena = source.arena(seed)
@@ -43,14 +43,14 @@ def shows_its_places(source: WorldSource) -> None:
                 expect(is_free, f"seed {seed}: {place.name} is not on free floor")
 
 
-def _told(arena: Arena) -> Tuple[Any, ...]:
+def _fingerprint(arena: Arena) -> Tuple[Any, ...]:
     """What two arenas that are the same have in common."""
     cells = b"" if arena.grid is None else arena.grid.cells.tobytes()
     bodies = [(body.name, np.asarray(body.pose_in_world).tobytes()) for body in arena.world.bodies]
-    return bodies, cells, arena.title, arena.way, arena.places, _seen(arena)
+    return bodies, cells, arena.title, arena.reference_length, arena.places, _first_scans(arena)
 
 
-def _seen(arena: Arena) -> bytes:
+def _first_scans(arena: Arena) -> bytes:
     """What a robot that stands at its origin sees in a fifth of a second."""
     simulation = Simulation(arena.world)
     try:
@@ -60,16 +60,16 @@ def _seen(arena: Arena) -> bytes:
         simulation.close()
 
 
-def _source(name: str) -> OwnWorlds:
+def _load_source(name: str) -> CustomWorlds:
     """With the values that its fields have by themselves. Raises PluginError if one has none."""
     try:
-        return OwnWorlds(name, kind_named(name)())
+        return CustomWorlds(name, load_generator(name)())
     except TypeError as error:
         raise PluginError(f"{name} cannot be tried: {error}") from None
 
 
-CHECKS = (gives_a_world_for_each_seed, repeats_itself, shows_its_places)
-KITS = {"world_generator": CheckSuite(plugin_finder(CONTRACT, _source), CHECKS)}
+CHECKS = (gives_a_world_for_each_seed, is_deterministic, places_are_free)
+KITS = {"world_generator": CheckSuite(plugin_finder(CONTRACT, _load_source), CHECKS)}
 
 
 if __name__ == "__main__":

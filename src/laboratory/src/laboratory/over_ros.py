@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, List, Mapping
 import numpy as np
 
 from home_service.judging.verdict import collision
-from laboratory.tasks.task import COLLISION, FAILURE, SUCCESS, TIMEOUT, Play
+from laboratory.tasks.task import COLLISION, FAILURE, SUCCESS, TIMEOUT, RunTrace
 from laboratory.worlds.source import Arena
 from planar import SettingsError
 from planar.files.reading import read_text
@@ -21,66 +21,66 @@ if TYPE_CHECKING:
     from laboratory.scenario.scenario import Scenario
 
 # Wall seconds that a run may take for each simulated one, to come up, and to end.
-PACE, BRINGING_UP_SECONDS, ENDING_SECONDS = 4.0, 120.0, 60.0
+WALL_SECONDS_PER_SIMULATED, STARTUP_SECONDS, SHUTDOWN_SECONDS = 4.0, 120.0, 60.0
 
 
-def play_over_ros(scenario: "Scenario", arena: Arena, seed: int) -> Play:
+def run_over_ros(scenario: "Scenario", arena: Arena, seed: int) -> RunTrace:
     """As the task's own ``play``. Raises SettingsError if the graph leaves no result."""
-    patience = scenario.seconds * PACE + BRINGING_UP_SECONDS
+    timeout = scenario.seconds * WALL_SECONDS_PER_SIMULATED + STARTUP_SECONDS
     with tempfile.TemporaryDirectory(prefix="over-ros-") as parent:
         command = [sys.executable, "-m", "laboratory", "play", str(scenario.file), "--over", "ros"]
-        command += ["--seed", str(seed), "--output", parent, "--timeout", f"{patience:g}"]
+        command += ["--seed", str(seed), "--output", parent, "--timeout", f"{timeout:g}"]
         if scenario.planner:
             command += ["--planner", scenario.planner]
-        said = _said_by(guarded(command, ENDING_SECONDS), patience + ENDING_SECONDS)
+        output = _run_command(guarded(command, SHUTDOWN_SECONDS), timeout + SHUTDOWN_SECONDS)
         results = list(Path(parent).glob("*/result.json"))
         if not results:
-            raise SettingsError(f"{scenario.file}: over ROS: {said[-1] if said else 'no result'}")
-        played = _play_of(results[0].parent, scenario.seconds)
-        return replace(played, way=scenario.task.way(scenario, arena))
+            raise SettingsError(f"{scenario.file}: over ROS: {output[-1] if output else 'no result'}")
+        trace = _read_trace(results[0].parent, scenario.seconds)
+        return replace(trace, reference_length=scenario.task.reference_length(scenario, arena))
 
 
-def _said_by(command: List[str], patience: float) -> List[str]:
+def _run_command(command: List[str], timeout: float) -> List[str]:
     """Lines that it has printed, however it ended."""
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     try:
-        return process.communicate(timeout=patience)[0].splitlines()
+        return process.communicate(timeout=timeout)[0].splitlines()
     except subprocess.TimeoutExpired:
         process.terminate()
         return process.communicate()[0].splitlines()
 
 
-def _play_of(folder: Path, seconds: float) -> Play:
+def _read_trace(folder: Path, seconds: float) -> RunTrace:
     """What a run folder tells."""
     result = json.loads(read_text(folder / "result.json"))
-    truth, estimate = (_poses_of(folder / f"trajectory_{name}.tum") for name in ("true", "estimated"))
+    truth, estimate = (_read_trajectory(folder / f"trajectory_{name}.tum") for name in ("true", "estimated"))
     if len(truth) < 2:
         raise SettingsError(f"over ROS: {result['reason']}")
     # What nodes take to end, which depends on the machine, is none of the run.
     end = truth[0, 0] + result.get("simulated_seconds", np.inf)
     truth, estimate = (poses[poses[:, 0] <= end] for poses in (truth, estimate))
-    touched = result.get("collisions", ())
-    return Play(
-        _outcome(result, touched, seconds), result["reason"], truth, _errors(truth, estimate), touched
+    collisions = result.get("collisions", ())
+    return RunTrace(
+        _outcome(result, collisions, seconds), result["reason"], truth, _errors(truth, estimate), collisions
     )
 
 
-def _outcome(result: Mapping[str, Any], touched: Any, seconds: float) -> str:
+def _outcome(result: Mapping[str, Any], collisions: Any, seconds: float) -> str:
     if result["success"]:
         return SUCCESS
-    if collision(touched):
+    if collision(collisions):
         return COLLISION
     return TIMEOUT if result.get("simulated_seconds", 0.0) > seconds else FAILURE
 
 
 def _errors(truth: np.ndarray, estimate: np.ndarray) -> np.ndarray:
     """Distances (M,) between estimated places and the true ones at their stamps."""
-    there = [np.interp(estimate[:, 0], truth[:, 0], truth[:, axis]) for axis in (1, 2)]
-    errors: np.ndarray = np.hypot(estimate[:, 1] - there[0], estimate[:, 2] - there[1])
+    true_xy = [np.interp(estimate[:, 0], truth[:, 0], truth[:, axis]) for axis in (1, 2)]
+    errors: np.ndarray = np.hypot(estimate[:, 1] - true_xy[0], estimate[:, 2] - true_xy[1])
     return errors
 
 
-def _poses_of(path: Path) -> np.ndarray:
+def _read_trajectory(path: Path) -> np.ndarray:
     """Stamps and poses (N, 4) of a trajectory in the TUM format."""
     rows = np.loadtxt(path, ndmin=2) if path.exists() else np.empty((0, 8))
     rows = rows.reshape(-1, 8)

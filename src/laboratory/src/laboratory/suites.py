@@ -5,8 +5,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import List, Sequence, Tuple
 
+from laboratory.launch_files import write_launch_files
 from laboratory.scenario import OFFICIAL, Scenario, read_scenario
-from laboratory.staging import stage
 from move_base_lite.control import check_local_planner
 from planar import PlanarError, SettingsError
 from planar.files.reading import exists, is_file
@@ -15,7 +15,7 @@ ROOT = Path(__file__).resolve().parents[4]
 FOLDER = ROOT / "scenarios"
 
 
-def scenarios_of(
+def load_suites(
     suites: Sequence[str], planners: Sequence[str] = (), is_over_ros: bool = False
 ) -> Tuple[List[Scenario], List[str]]:
     """The scenarios of files, of folders of them, or by their names in ``scenarios/``; with each planner.
@@ -25,35 +25,35 @@ def scenarios_of(
     """
     for name in planners:
         _check_planner(name, is_over_ros)
-    scenarios, complaints = [], []
+    scenarios, errors = [], []
     for path in [file for suite in suites for file in _files(suite)]:
         try:
             scenario = replace(read_scenario(path), is_over_ros=is_over_ros)
             each = [scenario.with_planner(name) for name in planners] or [scenario]
             _check(each[0])
         except PlanarError as error:
-            complaints.append(str(error))
+            errors.append(str(error))
         else:
             scenarios += each
-    return scenarios, complaints
+    return scenarios, errors
 
 
 def _check_planner(name: str, is_over_ros: bool) -> None:
     if name != OFFICIAL:
         check_local_planner(name)
     elif is_over_ros:
-        from laboratory.ros.official import official_move_base
+        from laboratory.ros import official_move_base
 
         official_move_base()
     else:
         raise SettingsError(f"planner {name}: that move_base is a node: add --over ros")
 
 
-def one_scenario(name: str, planner: str = "", is_over_ros: bool = False) -> Scenario:
+def load_scenario(name: str, planner: str = "", is_over_ros: bool = False) -> Scenario:
     """The scenario of a file or name. Raises SettingsError, also if that is wrong or there are several."""
-    scenarios, complaints = scenarios_of([name], [planner] if planner else [], is_over_ros)
-    if complaints:
-        raise SettingsError(complaints[0])
+    scenarios, errors = load_suites([name], [planner] if planner else [], is_over_ros)
+    if errors:
+        raise SettingsError(errors[0])
     if len(scenarios) != 1:
         raise SettingsError(f"{name}: {len(scenarios)} scenarios, not one")
     return scenarios[0]
@@ -83,14 +83,14 @@ def _check(scenario: Scenario) -> None:
             _check_planner(scenario.planner, scenario.is_over_ros)
         scenario.digest()
         arena = scenario.arena(scenario.seeds[0])
-        scenario.task.places(arena)
+        scenario.task.required_poses(arena)
         obstruction = None if arena.grid is None else obstruction_at(start, arena.grid)
         if obstruction:
             raise SettingsError(f"robot.start ({start.x:g}, {start.y:g}) {obstruction}")
         Simulation(arena.world, robot_named(scenario.robot), scenario.simulation, 0, start).close()
         if scenario.is_over_ros:
             with TemporaryDirectory() as folder:
-                stage(scenario, scenario.seeds[0], Path(folder))
+                write_launch_files(scenario, scenario.seeds[0], Path(folder))
     except PlanarError as error:
         text = str(error)
         raise SettingsError(

@@ -22,13 +22,13 @@ class Gymnasium:
     gif: Optional[Path] = option(None, "an animation of them", type=Path)
 
     def run(self) -> int:
-        from home_service_gym.playing import Episodes, environment_of, policy_of
+        from home_service_gym.episodes import EpisodeRunner, load_policy, make_environment
 
-        env = environment_of(self.environment, self.arguments)
+        env = make_environment(self.environment, self.arguments)
         try:
-            episodes = Episodes(env, policy_of(self.policy, env, self.seed), self.gif is not None)
+            episodes = EpisodeRunner(env, load_policy(self.policy, env, self.seed), self.gif is not None)
             for number in range(self.episodes):
-                print(f"seed {self.seed + number}: {episodes.play(self.seed + number)}", flush=True)
+                print(f"seed {self.seed + number}: {episodes.run(self.seed + number)}", flush=True)
         finally:
             env.close()
         if self.gif is not None:

@@ -5,26 +5,26 @@ from typing import Any, Dict, Sequence
 import numpy as np
 from gymnasium import spaces
 
-from home_service_gym.approach import Approach
-from home_service_gym.playground import Moment, Playground
+from home_service_gym.episode_simulation import EpisodeSimulation, EpisodeState
 from home_service_gym.task import (
-    PERIOD,
-    PROGRESS,
-    SUCCESS,
-    Beginning,
-    Judgement,
-    Marks,
+    PERIOD_REWARD,
+    PROGRESS_REWARD,
+    SUCCESS_REWARD,
+    EpisodeStart,
+    Overlay,
+    TaskStep,
+    goal_observation,
     goal_space,
-    seen_from,
 )
+from home_service_gym.traversable_space import DistanceToGoal
 from planar import Pose2
 from sim_bridge.world import Body
 
 # Metres from a zone's middle within which the robot is there, as a mission is judged; m/s at which it stands.
-ARRIVED, STANDING = 0.25, 0.05
+GOAL_RADIUS, STOPPED_SPEED = 0.25, 0.05
 
 
-class Errand:
+class ErrandTask:
     """From ``start`` to ``pickup``, where it stands for ``seconds``, then to ``dropoff``, where it stops.
 
     ``rate``: control periods a second.
@@ -40,27 +40,33 @@ class Errand:
     def spaces(self) -> Dict[str, spaces.Space[Any]]:
         return {"goal": goal_space(), "carrying": spaces.MultiBinary(1)}
 
-    def begin(self, playground: Playground, rng: np.random.Generator) -> Beginning:
-        self._ground, self._is_carrying, self._waited = playground.ground, False, 0
-        self._approach = Approach(self._ground, self._zones[0], self._start)
-        return Beginning(self._start)
+    def reset(self, simulation: EpisodeSimulation, rng: np.random.Generator) -> EpisodeStart:
+        self._traversable_space, self._is_carrying, self._waited = simulation.traversable_space, False, 0
+        self._distance_to_goal = DistanceToGoal(self._traversable_space, self._zones[0], self._start)
+        return EpisodeStart(self._start)
 
-    def observe(self, moment: Moment) -> Dict[str, np.ndarray]:
+    def observation(self, state: EpisodeState) -> Dict[str, np.ndarray]:
         carrying = np.array([self._is_carrying], dtype=np.int8)
-        return {"goal": seen_from(moment.base_in_world, self._approach.goal), "carrying": carrying}
+        return {
+            "goal": goal_observation(state.base_in_world, self._distance_to_goal.goal),
+            "carrying": carrying,
+        }
 
-    def judge(self, moment: Moment) -> Judgement:
-        base = moment.base_in_world
-        reward = PERIOD + PROGRESS * self._approach.metres(base)
-        is_there = base.distance_to(self._approach.goal) <= ARRIVED and abs(moment.twist.v) < STANDING
+    def step(self, state: EpisodeState) -> TaskStep:
+        base = state.base_in_world
+        reward = PERIOD_REWARD + PROGRESS_REWARD * self._distance_to_goal.decrease(base)
+        is_there = (
+            base.distance_to(self._distance_to_goal.goal) <= GOAL_RADIUS
+            and abs(state.twist.v) < STOPPED_SPEED
+        )
         self._waited = self._waited + 1 if is_there else 0
         if self._is_carrying:
-            return Judgement(reward + SUCCESS, "success") if is_there else Judgement(reward)
+            return TaskStep(reward + SUCCESS_REWARD, "success") if is_there else TaskStep(reward)
         if self._waited < self._periods_to_wait:
-            return Judgement(reward)
+            return TaskStep(reward)
         self._is_carrying = True
-        self._approach = Approach(self._ground, self._zones[1], base)
-        return Judgement(reward + SUCCESS)
+        self._distance_to_goal = DistanceToGoal(self._traversable_space, self._zones[1], base)
+        return TaskStep(reward + SUCCESS_REWARD)
 
-    def marks(self) -> Marks:
-        return Marks((self._approach.goal, ARRIVED))
+    def overlay(self) -> Overlay:
+        return Overlay((self._distance_to_goal.goal, GOAL_RADIUS))

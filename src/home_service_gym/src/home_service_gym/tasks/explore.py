@@ -5,17 +5,17 @@ from typing import Any, Dict, Sequence
 import numpy as np
 from gymnasium import spaces
 
-from home_service_gym.maps.around import MapAround, map_space
-from home_service_gym.maps.discovery import Discovery
-from home_service_gym.playground import Moment, Playground
-from home_service_gym.task import PERIOD, SUCCESS, Beginning, Judgement, Marks
+from home_service_gym.episode_simulation import EpisodeSimulation, EpisodeState
+from home_service_gym.maps.egocentric_map import EgocentricMap, map_space
+from home_service_gym.maps.explored_area import ExploredArea
+from home_service_gym.task import PERIOD_REWARD, SUCCESS_REWARD, EpisodeStart, Overlay, TaskStep
 from sim_bridge.world import Body
 
 # The share of all free floor that is enough; what a square metre that was not known is worth.
-ENOUGH, AREA = 0.95, 1.0
+COMPLETE_SHARE, AREA_REWARD = 0.95, 1.0
 
 
-class Explore:
+class ExploreTask:
     """The robot is told which cells of the true map its lidar has reached; it is put anywhere."""
 
     def bodies(self) -> Sequence[Body]:
@@ -24,20 +24,23 @@ class Explore:
     def spaces(self) -> Dict[str, spaces.Space[Any]]:
         return {"map": map_space()}
 
-    def begin(self, playground: Playground, rng: np.random.Generator) -> Beginning:
-        ground = playground.ground
-        self._map, self._discovery = MapAround(ground.grid), Discovery(ground.grid)
-        return Beginning(ground.place(rng))
+    def reset(self, simulation: EpisodeSimulation, rng: np.random.Generator) -> EpisodeStart:
+        traversable_space = simulation.traversable_space
+        self._map, self._explored_area = (
+            EgocentricMap(traversable_space.grid),
+            ExploredArea(traversable_space.grid),
+        )
+        return EpisodeStart(traversable_space.sample_pose(rng))
 
-    def observe(self, moment: Moment) -> Dict[str, np.ndarray]:
-        if not self._discovery.share:
-            self._discovery.see(moment.base_in_world, moment.scan)
-        return {"map": self._map.seen_from(moment.base_in_world, self._discovery.known)}
+    def observation(self, state: EpisodeState) -> Dict[str, np.ndarray]:
+        if not self._explored_area.share:
+            self._explored_area.add_scan(state.base_in_world, state.scan)
+        return {"map": self._map.view_from(state.base_in_world, self._explored_area.explored)}
 
-    def judge(self, moment: Moment) -> Judgement:
-        reward = PERIOD + AREA * self._discovery.see(moment.base_in_world, moment.scan)
-        is_done = self._discovery.share >= ENOUGH
-        return Judgement(reward + SUCCESS, "success") if is_done else Judgement(reward)
+    def step(self, state: EpisodeState) -> TaskStep:
+        reward = PERIOD_REWARD + AREA_REWARD * self._explored_area.add_scan(state.base_in_world, state.scan)
+        is_done = self._explored_area.share >= COMPLETE_SHARE
+        return TaskStep(reward + SUCCESS_REWARD, "success") if is_done else TaskStep(reward)
 
-    def marks(self) -> Marks:
-        return Marks(known=self._discovery.known)
+    def overlay(self) -> Overlay:
+        return Overlay(explored=self._explored_area.explored)

@@ -5,22 +5,22 @@ from typing import Any, Dict, Sequence
 import numpy as np
 from gymnasium import spaces
 
-from home_service_gym.playground import Moment, Playground
+from home_service_gym.episode_simulation import EpisodeSimulation, EpisodeState
 from home_service_gym.task import (
-    PERIOD,
-    PROGRESS,
-    SUCCESS,
-    Beginning,
-    Judgement,
-    Marks,
+    PERIOD_REWARD,
+    PROGRESS_REWARD,
+    SUCCESS_REWARD,
+    EpisodeStart,
+    Overlay,
+    TaskStep,
+    goal_observation,
     goal_space,
-    seen_from,
 )
 from planar import Pose2
 from sim_bridge.world import Body
 
 
-class Reach:
+class ReachTask:
     """``goal_in_odom`` is seen from ``start``; within ``radius``, m, of it the robot has arrived.
 
     The robot is told of the goal by its odometry, and judged by the truth.
@@ -36,19 +36,19 @@ class Reach:
     def spaces(self) -> Dict[str, spaces.Space[Any]]:
         return {"goal": goal_space()}
 
-    def begin(self, playground: Playground, rng: np.random.Generator) -> Beginning:
+    def reset(self, simulation: EpisodeSimulation, rng: np.random.Generator) -> EpisodeStart:
         self._left = self._start.distance_to(self._goal)
-        self._trajectories = playground.arena.world.trajectories
-        return Beginning(self._start)
+        self._trajectories = simulation.arena.world.trajectories
+        return EpisodeStart(self._start)
 
-    def observe(self, moment: Moment) -> Dict[str, np.ndarray]:
-        return {"goal": seen_from(moment.base_in_odom, self._goal_in_odom)}
+    def observation(self, state: EpisodeState) -> Dict[str, np.ndarray]:
+        return {"goal": goal_observation(state.base_in_odom, self._goal_in_odom)}
 
-    def judge(self, moment: Moment) -> Judgement:
-        left = moment.base_in_world.distance_to(self._goal)
-        reward = PERIOD + PROGRESS * (self._left - left)
+    def step(self, state: EpisodeState) -> TaskStep:
+        left = state.base_in_world.distance_to(self._goal)
+        reward = PERIOD_REWARD + PROGRESS_REWARD * (self._left - left)
         self._left = left
-        return Judgement(reward + SUCCESS, "success") if left <= self._radius else Judgement(reward)
+        return TaskStep(reward + SUCCESS_REWARD, "success") if left <= self._radius else TaskStep(reward)
 
-    def marks(self) -> Marks:
-        return Marks((self._goal, self._radius), self._trajectories)
+    def overlay(self) -> Overlay:
+        return Overlay((self._goal, self._radius), self._trajectories)

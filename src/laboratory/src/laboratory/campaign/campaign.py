@@ -7,18 +7,18 @@ from typing import Any, Callable, Dict, Iterable
 from distributed import Client, Future, as_completed
 
 from laboratory.errors import WorkersError
-from laboratory.results.result import Key, Result, error_of
-from laboratory.results.store import Store
+from laboratory.results.result import RunKey, RunResult, error_result
+from laboratory.results.store import ResultStore
 from laboratory.results.version import version
 from laboratory.scenario.scenario import Scenario
 
 RETRIES = 2
 # Missions that are handed out for each worker: one is played, the next waits.
-AHEAD = 2
+QUEUED_PER_WORKER = 2
 
 
 @dataclass(frozen=True, eq=False)
-class Mission:
+class ScenarioRun:
     """A scenario with one of its seeds; ``digest``: of the scenario."""
 
     scenario: Scenario
@@ -26,8 +26,8 @@ class Mission:
     digest: str
 
     @property
-    def key(self) -> Key:
-        return Key(self.digest, self.seed, version())
+    def key(self) -> RunKey:
+        return RunKey(self.digest, self.seed, version())
 
 
 class Campaign:
@@ -36,32 +36,38 @@ class Campaign:
     ``heard``: called with each result, after it has been kept.
     """
 
-    def __init__(self, client: Client, store: Store, heard: Callable[[Mission, Result], None], workers: int):
-        self._client, self._store, self._heard = client, store, heard
-        self._ahead = AHEAD * workers
-        self._under_way: Dict[str, Mission] = {}
+    def __init__(
+        self,
+        client: Client,
+        store: ResultStore,
+        on_result: Callable[[ScenarioRun, RunResult], None],
+        workers: int,
+    ):
+        self._client, self._store, self._on_result = client, store, on_result
+        self._max_submitted = QUEUED_PER_WORKER * workers
+        self._submitted: Dict[str, ScenarioRun] = {}
 
-    def run(self, missions: Iterable[Mission]) -> None:
+    def run(self, runs: Iterable[ScenarioRun]) -> None:
         """Plays them all. Raises ResultsError, and WorkersError if there is nobody left to play."""
-        waiting = iter(missions)
-        first = [self._hand_out(mission) for mission in islice(waiting, self._ahead)]
-        answers = as_completed(first, loop=self._client.loop)
-        for future in answers:
-            mission = self._under_way.pop(future.key)
-            result = self._answer(future, mission)
+        pending = iter(runs)
+        first = [self._submit(run) for run in islice(pending, self._max_submitted)]
+        completed = as_completed(first, loop=self._client.loop)
+        for future in completed:
+            run = self._submitted.pop(future.key)
+            result = self._result_of(future, run)
             self._store.add(result)
-            self._heard(mission, result)
+            self._on_result(run, result)
             future.release()
-            for following in islice(waiting, 1):
-                answers.add(self._hand_out(following))
+            for next_run in islice(pending, 1):
+                completed.add(self._submit(next_run))
 
-    def _hand_out(self, mission: Mission) -> Future:
-        key = f"play-{mission.digest}-{mission.seed}"
-        self._under_way[key] = mission
-        work = (mission.scenario, mission.key)
-        return self._client.submit(play_elsewhere, *work, key=key, retries=RETRIES, pure=False)
+    def _submit(self, run: ScenarioRun) -> Future:
+        key = f"play-{run.digest}-{run.seed}"
+        self._submitted[key] = run
+        work = (run.scenario, run.key)
+        return self._client.submit(run_on_worker, *work, key=key, retries=RETRIES, pure=False)
 
-    def _answer(self, future: Any, mission: Mission) -> Result:
+    def _result_of(self, future: Any, run: ScenarioRun) -> RunResult:
         if future.status in ("cancelled", "lost"):
             raise WorkersError("the scheduler is gone; what has been played is kept")
         error = future.exception() if future.status == "error" else None
@@ -71,14 +77,14 @@ class Campaign:
             return future.result()
         name = type(error).__name__
         text = "its worker died again and again" if name == "KilledWorker" else f"{name}: {error}"
-        return error_of(RuntimeError(text), mission.key)
+        return error_result(RuntimeError(text), run.key)
 
 
-def play_elsewhere(scenario: Scenario, key: Key) -> Result:
+def run_on_worker(scenario: Scenario, key: RunKey) -> RunResult:
     """What a worker does. Raises WorkersError if it has other software than who asks."""
-    from laboratory.playing import play
+    from laboratory.runner import run_scenario
 
     if version() != key.version:
         text = f"a worker has another version of the software ({version()}) than this ({key.version})"
         raise WorkersError(text)
-    return play(scenario, key.seed, key.digest)
+    return run_scenario(scenario, key.seed, key.digest)

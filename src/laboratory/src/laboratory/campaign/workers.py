@@ -14,12 +14,12 @@ from distributed import Client, LocalCluster
 from laboratory.errors import WorkersError
 
 # A mission is lost for good when so many workers have died of it.
-DEATHS = 3
+MAX_WORKER_DEATHS = 3
 # Workers are renewed now and then, so that whatever they leak stays small.
-LIFETIME, STAGGER = "60 minutes", "10 minutes"
-SECONDS_TO_CONNECT = 20
+LIFETIME, LIFETIME_STAGGER = "60 minutes", "10 minutes"
+CONNECT_TIMEOUT = 20
 # Dask has workers give back what they free at once, only to ask for it anew: 20 000 page faults a mission.
-MEMORY = {"MALLOC_TRIM_THRESHOLD_": 2**27, "MALLOC_MMAP_THRESHOLD_": 2**26, "MALLOC_ARENA_MAX": 1}
+MALLOC_ENVIRONMENT = {"MALLOC_TRIM_THRESHOLD_": 2**27, "MALLOC_MMAP_THRESHOLD_": 2**26, "MALLOC_ARENA_MAX": 1}
 
 
 @dataclass(frozen=True)
@@ -35,20 +35,23 @@ class Workers:
         dask.config.set(
             {
                 "distributed.scheduler.worker-saturation": 1.0,
-                "distributed.scheduler.allowed-failures": DEATHS - 1,
+                "distributed.scheduler.allowed-failures": MAX_WORKER_DEATHS - 1,
                 "distributed.worker.daemon": True,
                 "distributed.worker.profile.enabled": False,
-                **{f"distributed.nanny.pre-spawn-environ.{key}": value for key, value in MEMORY.items()},
+                **{
+                    f"distributed.nanny.pre-spawn-environ.{key}": value
+                    for key, value in MALLOC_ENVIRONMENT.items()
+                },
             }
         )
         for name in ("distributed", "distributed.nanny", "distributed.scheduler", "distributed.worker"):
             logging.getLogger(name).setLevel(logging.CRITICAL)
-        with self._there() if self.scheduler else self._here() as client:
+        with self._remote_scheduler() if self.scheduler else self._local_cluster() as client:
             yield client
 
     @contextmanager
-    def _here(self) -> Iterator[Client]:
-        with _deaf_to_interrupts():
+    def _local_cluster(self) -> Iterator[Client]:
+        with _ignoring_sigint():
             cluster = LocalCluster(
                 n_workers=self.count or len(os.sched_getaffinity(0)),
                 threads_per_worker=1,
@@ -58,7 +61,7 @@ class Workers:
                 worker_dashboard_address="127.0.0.1:0",
                 silence_logs=logging.CRITICAL,
                 lifetime=LIFETIME,
-                lifetime_stagger=STAGGER,
+                lifetime_stagger=LIFETIME_STAGGER,
                 lifetime_restart=True,
             )
         try:
@@ -69,23 +72,23 @@ class Workers:
                 cluster.close(timeout=10)
 
     @contextmanager
-    def _there(self) -> Iterator[Client]:
+    def _remote_scheduler(self) -> Iterator[Client]:
         try:
-            client = Client(self.scheduler, timeout=SECONDS_TO_CONNECT, set_as_default=False)
-            client.wait_for_workers(1, timeout=SECONDS_TO_CONNECT)
+            client = Client(self.scheduler, timeout=CONNECT_TIMEOUT, set_as_default=False)
+            client.wait_for_workers(1, timeout=CONNECT_TIMEOUT)
         except (OSError, ValueError) as error:
             raise WorkersError(f"{self.scheduler}: no scheduler with workers answers ({error})") from None
         with client:
             yield client
 
 
-def count_of(client: Any) -> int:
+def worker_count(client: Any) -> int:
     """How many workers there are now."""
     return len(client.scheduler_info(n_workers=-1)["workers"])
 
 
 @contextmanager
-def _deaf_to_interrupts() -> Iterator[None]:
+def _ignoring_sigint() -> Iterator[None]:
     """Processes that are started meanwhile do not hear Ctrl-C, which this one hears for them."""
     if threading.current_thread() is not threading.main_thread():
         yield

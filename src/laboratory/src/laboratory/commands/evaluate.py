@@ -39,49 +39,49 @@ class Evaluate:
     def run(self) -> int:
         from laboratory.campaign import Workers
         from laboratory.evaluation import Evaluation
-        from laboratory.scenario.seeds import seeds_of
-        from laboratory.statistics.requirement import requirement_from
-        from laboratory.suites import scenarios_of
-        from laboratory.telling import broken_rules, regressions
+        from laboratory.report import regressions, violated_requirements
+        from laboratory.scenario.seeds import parse_seeds
+        from laboratory.statistics.requirement import parse_requirement
+        from laboratory.suites import load_suites
         from planar import PlanarError, SettingsError
         from supervision.display import print_error
         from supervision.interruption import RunInterruptedError, raise_when_interrupted
 
-        rules = [requirement_from(text) for text in self.require or ()]
-        seeds = None if self.seeds is None else seeds_of(self.seeds)
-        scenarios, complaints = scenarios_of(self.suites, self.planner or (), self.over == "ros")
-        for complaint in complaints:
+        requirements = [parse_requirement(text) for text in self.require or ()]
+        seeds = None if self.seeds is None else parse_seeds(self.seeds)
+        scenarios, errors = load_suites(self.suites, self.planner or (), self.over == "ros")
+        for complaint in errors:
             print_error(complaint)
         if not scenarios:
             raise SettingsError("no scenario is left to be played")
         evaluation = Evaluation(scenarios, seeds, self.output / "results.sqlite")
-        earlier = evaluation.evaluated(evaluation.version_like(self.against)) if self.against else []
+        earlier = evaluation.evaluated(evaluation.version_with_prefix(self.against)) if self.against else []
         raise_when_interrupted()
         with closing(evaluation):
             try:
-                evaluation.play(Workers(self.workers or 0, self.scheduler))
+                evaluation.run(Workers(self.workers or 0, self.scheduler))
             except (PlanarError, RunInterruptedError):
                 with suppress(PlanarError):  # what ended it counts, though a full disk may end this too
                     evaluated = evaluation.evaluated()
                     if any(each.results for each in evaluated):
-                        self._tell(evaluated)
+                        self._report(evaluated)
                 raise
             evaluated = evaluation.evaluated()
-            self._tell(evaluated)
-        broken = broken_rules(evaluated, rules) + regressions(evaluated, earlier)
-        for text in broken:
+            self._report(evaluated)
+        violated = violated_requirements(evaluated, requirements) + regressions(evaluated, earlier)
+        for text in violated:
             print(text)
-        return 2 if complaints else int(bool(broken))
+        return 2 if errors else int(bool(violated))
 
-    def _tell(self, evaluated: Any) -> None:
+    def _report(self, evaluated: Any) -> None:
         """In the terminal, in tables and on the page."""
         from laboratory.page import page_html
+        from laboratory.report import summary_lines
         from laboratory.results.export import export
         from laboratory.results.version import version
-        from laboratory.telling import lines_of
         from planar import write_atomically
 
-        print("\n".join(lines_of(evaluated)))
+        print("\n".join(summary_lines(evaluated)))
         export([(each.scenario, each.results) for each in evaluated], self.output)
         write_atomically(self.output / "page.html", page_html(evaluated, version()).encode("utf-8"))
         print(f"page and tables in {self.output}")

@@ -23,27 +23,32 @@ class Falsify:
 
     def run(self) -> int:
         from laboratory.campaign import Workers
-        from laboratory.search.cases import Ingredients
-        from laboratory.search.falsifying import Search
-        from laboratory.search.writing import write_case
-        from laboratory.suites import one_scenario
+        from laboratory.search.case_file import write_case
+        from laboratory.search.cases import CaseSpace
+        from laboratory.search.falsification import FalsificationSearch
+        from laboratory.suites import load_scenario
         from planar import SettingsError
         from supervision.interruption import raise_when_interrupted
 
-        ingredients = Ingredients(self.boxes, self.people, self.faults)
+        case_space = CaseSpace(self.boxes, self.people, self.faults)
         if min(self.boxes, self.people, self.faults) < 0:
             raise SettingsError("--boxes, --people and --faults must not be negative")
-        scenario = one_scenario(self.scenario, self.planner)
+        scenario = load_scenario(self.scenario, self.planner)
         raise_when_interrupted()
-        search = Search(scenario, ingredients, self.seed, self.output)
+        search = FalsificationSearch(scenario, case_space, self.seed, self.output)
         with Workers(self.workers or 0, self.scheduler).client() as client:
             found = search.run(client, self.trials)
         if found is None:
-            print(f"nothing found in {search.tried} cases; the hardest had an ease of {search.least:.2f}")
+            print(
+                f"no failure found in {search.evaluated_count} cases "
+                f"(minimum robustness {search.min_robustness:.2f})"
+            )
             return 0
         case, result = search.shrink(found)
         path = write_case(scenario, case, result, self.output)
         print(f"{result.outcome.upper()}: {result.reason}")
-        print(f"{len(found.pieces)} pieces shrunk to {len(case.pieces)}: ./scripts/play.sh {path}", end=" ")
+        print(
+            f"{len(found.elements)} pieces shrunk to {len(case.elements)}: ./scripts/play.sh {path}", end=" "
+        )
         print(f"--seed {case.seed}")
         return 1

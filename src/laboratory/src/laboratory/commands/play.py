@@ -16,22 +16,22 @@ class Play(RunOptions):
 
     def run(self) -> int:
         from home_service.preload import preload_nodes
-        from laboratory.suites import one_scenario
+        from laboratory.suites import load_scenario
 
         if self.over == "ros":
             preload_nodes()
-        scenario = one_scenario(self.scenario, self.planner, self.over == "ros")
+        scenario = load_scenario(self.scenario, self.planner, self.over == "ros")
         if self.over == "ros":
-            from laboratory.ros.conducting import conduct
+            from laboratory.ros.scenario_launch import launch_scenario
 
-            return conduct(self, scenario, self.seed)
-        self._refuse_what_is_of_runs()
-        return self._play(scenario)
+            return launch_scenario(self, scenario, self.seed)
+        self._refuse_ros_options()
+        return self._run_in_process(scenario)
 
-    def _play(self, scenario: Any) -> int:
-        from laboratory.playing import play
+    def _run_in_process(self, scenario: Any) -> int:
+        from laboratory.runner import run_scenario
 
-        result = play(scenario, self.seed)
+        result = run_scenario(scenario, self.seed)
         print(f"{scenario.label}, seed {self.seed}: {result.outcome.upper()}: {result.reason}")
         if result.seconds is not None:
             print(
@@ -39,10 +39,10 @@ class Play(RunOptions):
             )
         return 0 if result.is_success else 1
 
-    def _refuse_what_is_of_runs(self) -> None:
+    def _refuse_ros_options(self) -> None:
         from planar import SettingsError
 
-        usual = words(Play(scenario=self.scenario, seed=self.seed, planner=self.planner))
-        given = [word for word in words(self) if word not in usual and word.startswith("--")]
+        defaults = words(Play(scenario=self.scenario, seed=self.seed, planner=self.planner))
+        given = [word for word in words(self) if word not in defaults and word.startswith("--")]
         if given:
             raise SettingsError(f"{given[0]} is for a run over ROS: add --over ros")

@@ -27,54 +27,57 @@ class Tune:
 
     def run(self) -> int:
         from laboratory.campaign import Workers
-        from laboratory.scenario.seeds import seeds_of
-        from laboratory.search.tuning import TUNED, Tuning, read_space, text_of
+        from laboratory.scenario.seeds import parse_seeds
+        from laboratory.search.tuning import TUNED, Tuning, parameter_file_text, read_space
         from planar import SettingsError, write_atomically
         from supervision.interruption import raise_when_interrupted
 
         if not self.prove:
             raise SettingsError("--prove: on which other suites is the gain to be proved?")
-        seeds, proof_seeds = seeds_of(self.seeds), seeds_of(self.proof_seeds)
+        seeds, proof_seeds = parse_seeds(self.seeds), parse_seeds(self.proof_seeds)
         tuned_on, proved_on = self._scenarios(self.suites), self._scenarios(self.prove)
-        both = {each.digest() for each in tuned_on} & {each.digest() for each in proved_on}
-        if both and set(seeds) & set(proof_seeds):
+        candidates = {each.digest() for each in tuned_on} & {each.digest() for each in proved_on}
+        if candidates and set(seeds) & set(proof_seeds):
             raise SettingsError("--proof-seeds: of the same suite, they must be others than --seeds")
         raise_when_interrupted()
         tuning = Tuning(tuned_on, seeds, read_space(self.space), self.seed, self.output)
         with Workers(self.workers or 0, self.scheduler).client() as client:
             values = tuning.run(client, self.trials)
-            write_atomically(self.output / TUNED, text_of(values).encode("utf-8"))
-            print(f"the best of {self.trials}, in {self.output / TUNED}:\n{text_of(values)}", end="")
-            return self._prove(client, proved_on, proof_seeds, values)
+            text, file = parameter_file_text(values), self.output / TUNED
+            write_atomically(file, text.encode("utf-8"))
+            print(f"best of {self.trials} candidates, written to {file}:\n{text}", end="")
+            return self._compare_gain(client, proved_on, proof_seeds, values)
 
     def _scenarios(self, suites: Sequence[str]) -> Sequence[Any]:
-        from laboratory.suites import scenarios_of
+        from laboratory.suites import load_suites
         from planar import SettingsError
 
-        scenarios, complaints = scenarios_of(suites)
-        if complaints:
-            raise SettingsError(complaints[0])
+        scenarios, errors = load_suites(suites)
+        if errors:
+            raise SettingsError(errors[0])
         return scenarios
 
-    def _prove(self, client: Any, scenarios: Sequence[Any], seeds: Tuple[int, ...], values: Any) -> int:
+    def _compare_gain(
+        self, client: Any, scenarios: Sequence[Any], seeds: Tuple[int, ...], values: Any
+    ) -> int:
         """Plays them with the usual and with the tuned parameters; 0 if some are better and none worse."""
         from laboratory.evaluation import Evaluation
-        from laboratory.page.page import verdict
+        from laboratory.page.page import comparison_text
         from laboratory.search.tuning import RESULTS, with_values
         from laboratory.statistics.comparison import BETTER, WORSE, compare
 
-        both = [*scenarios, *(with_values(each, values) for each in scenarios)]
-        evaluation = Evaluation(both, seeds, self.output / RESULTS)
+        candidates = [*scenarios, *(with_values(each, values) for each in scenarios)]
+        evaluation = Evaluation(candidates, seeds, self.output / RESULTS)
         try:
-            evaluation.play_on(client)
+            evaluation.run_on(client)
             evaluated = evaluation.evaluated()
         finally:
             evaluation.close()
-        said = []
+        verdicts = []
         for before, after in zip(evaluated, evaluated[len(scenarios) :]):
             comparison = compare(before.results, after.results)
-            said += [comparison.success, comparison.time]
-            print(f"{before.scenario.label}, {comparison.pairs} seeds: {verdict(comparison)}")
-        is_proved = BETTER in said and WORSE not in said
+            verdicts += [comparison.success, comparison.time]
+            print(f"{before.scenario.label}, {comparison.pairs} seeds: {comparison_text(comparison)}")
+        is_proved = BETTER in verdicts and WORSE not in verdicts
         print("the gain is proved" if is_proved else "no gain is proved")
         return 0 if is_proved else 1

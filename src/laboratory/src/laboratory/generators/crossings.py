@@ -18,22 +18,22 @@ from sim_bridge.world import Body, World
 # Metres: half the place's side, its walls, a cylinder; DynaBARN's start is outside its open side.
 HALF, THICKNESS, RADIUS, HEIGHT = 10.0, 0.5, 0.5, 1.0
 START, GOAL_IN_ODOM = Pose2(11.0, 0.0, math.pi), Pose2(20.0, 0.0)
-SLOWEST, FASTEST, FEWEST, MOST = 0.5, 1.9, 8, 14
-MOST_CYLINDERS, MOST_LEGS = 60, 20
+MIN_SPEED, MAX_SPEED, MIN_COUNT, MAX_COUNT = 0.5, 1.9, 8, 14
+CYLINDER_LIMIT, LEG_LIMIT = 60, 20
 _STREAM = 45
 
 
 @dataclass(frozen=True)
-class Crossings:
+class CrossingCylinders:
     """``slowest``, ``fastest``: m/s; of each seed all cylinders are about as fast.
 
     There are ``fewest`` to ``most``, each with a way from side to side of so many straight ``legs``.
     """
 
-    slowest: float = SLOWEST
-    fastest: float = FASTEST
-    fewest: int = FEWEST
-    most: int = MOST
+    min_speed: float = MIN_SPEED
+    max_speed: float = MAX_SPEED
+    min_count: int = MIN_COUNT
+    max_count: int = MAX_COUNT
     legs: int = 1
 
     def arena(self, seed: int) -> Arena:
@@ -47,16 +47,16 @@ class Crossings:
 
 
 @lru_cache(maxsize=64)
-def _arena(source: Crossings, seed: int) -> Arena:
+def _arena(source: CrossingCylinders, seed: int) -> Arena:
     rng = np.random.default_rng([seed, _STREAM])
-    speed = rng.uniform(source.slowest, source.fastest)
+    speed = rng.uniform(source.min_speed, source.max_speed)
     bodies: List[Body] = [FLOOR, *_walls()]
     trajectories = []
-    for number in range(rng.integers(source.fewest, source.most, endpoint=True)):
-        way_xy = _way(source.legs, rng)
-        post_there = post(f"crossing_{number}", Pose2(*way_xy[0]), RADIUS, HEIGHT, is_kinematic=True)
-        bodies.append(post_there)
-        trajectories.append(_course(post_there.name, way_xy, speed * rng.uniform(0.9, 1.1), rng))
+    for number in range(rng.integers(source.min_count, source.max_count, endpoint=True)):
+        waypoints_xy = _waypoints(source.legs, rng)
+        cylinder = post(f"crossing_{number}", Pose2(*waypoints_xy[0]), RADIUS, HEIGHT, is_kinematic=True)
+        bodies.append(cylinder)
+        trajectories.append(_trajectory(cylinder.name, waypoints_xy, speed * rng.uniform(0.9, 1.1), rng))
     world = World(f"crossings {seed}", tuple(bodies), trajectories=tuple(trajectories))
     return Arena(world, None, f"crossings at {speed:.1f} m/s", GOAL_IN_ODOM.x)
 
@@ -70,42 +70,52 @@ def _walls() -> List[Body]:
     ]
 
 
-def _way(legs: int, rng: np.random.Generator) -> np.ndarray:
+def _waypoints(legs: int, rng: np.random.Generator) -> np.ndarray:
     """From somewhere on one side, in so many straight legs, to somewhere on the other, (legs + 1, 2)."""
-    most = HALF - 2.0 * RADIUS
-    along = rng.uniform(-most, most, 2)
-    across = np.array([-most, most])
+    max_count = HALF - 2.0 * RADIUS
+    along = rng.uniform(-max_count, max_count, 2)
+    across = np.array([-max_count, max_count])
     ends_xy = np.column_stack((along, across) if rng.random() < 0.7 else (across, along))
-    return np.vstack((ends_xy[:1], rng.uniform(-most, most, (legs - 1, 2)), ends_xy[1:]))
+    return np.vstack((ends_xy[:1], rng.uniform(-max_count, max_count, (legs - 1, 2)), ends_xy[1:]))
 
 
-def _course(link: str, way_xy: np.ndarray, speed: float, rng: np.random.Generator) -> ScriptedTrajectory:
+def _trajectory(
+    link: str, waypoints_xy: np.ndarray, speed: float, rng: np.random.Generator
+) -> ScriptedTrajectory:
     """There and back for ever, begun anywhere on the way."""
-    reached = np.concatenate(([0.0], np.linalg.norm(np.diff(way_xy, axis=0), axis=1).cumsum())) / speed
-    round_trip = 2.0 * float(reached[-1])
-    begun = rng.uniform(0.0, round_trip)
-    corners = np.concatenate((reached, round_trip - reached[-2:0:-1]))
-    ahead = np.sort((corners - begun) % round_trip)
+    arrival_times = (
+        np.concatenate(([0.0], np.linalg.norm(np.diff(waypoints_xy, axis=0), axis=1).cumsum())) / speed
+    )
+    round_trip = 2.0 * float(arrival_times[-1])
+    phase = rng.uniform(0.0, round_trip)
+    corners = np.concatenate((arrival_times, round_trip - arrival_times[-2:0:-1]))
+    ahead = np.sort((corners - phase) % round_trip)
     times = np.concatenate(([0.0], ahead[(ahead > 0.0) & (ahead < round_trip)], [round_trip]))
-    on_way = (begun + times) % round_trip
-    on_way = np.minimum(on_way, round_trip - on_way)
+    path_times = (phase + times) % round_trip
+    path_times = np.minimum(path_times, round_trip - path_times)
     return ScriptedTrajectory(
-        link, times, np.column_stack([np.interp(on_way, reached, xy) for xy in way_xy.T])
+        link, times, np.column_stack([np.interp(path_times, arrival_times, xy) for xy in waypoints_xy.T])
     )
 
 
-def read_crossings(table: Table, folder: Path) -> Crossings:
+def read_crossings(table: Table, folder: Path) -> CrossingCylinders:
     """``crossings``: the least and the greatest ``speed``, m/s; perhaps how many ``cylinders`` at least and
     at most, and the ``legs`` of their ways.
     """
     table.allow_only("crossings")
     part = table.table("crossings")
     part.allow_only("speed", "cylinders", "legs")
-    slowest, fastest = part.numbers("speed", "least, greatest")
-    part.check(0.0 < slowest <= fastest <= 5.0, "speed", "two speeds up to 5 m/s, the lesser first")
-    fewest, most = part.numbers("cylinders", "least, most") if "cylinders" in part else (FEWEST, MOST)
-    are_counts = fewest == int(fewest) and most == int(most) and 0 <= fewest <= most <= MOST_CYLINDERS
-    part.check(are_counts, "cylinders", f"two counts up to {MOST_CYLINDERS}, the lesser first")
+    min_speed, max_speed = part.numbers("speed", "least, greatest")
+    part.check(0.0 < min_speed <= max_speed <= 5.0, "speed", "two speeds up to 5 m/s, the lesser first")
+    min_count, max_count = (
+        part.numbers("cylinders", "least, most") if "cylinders" in part else (MIN_COUNT, MAX_COUNT)
+    )
+    are_counts = (
+        min_count == int(min_count)
+        and max_count == int(max_count)
+        and 0 <= min_count <= max_count <= CYLINDER_LIMIT
+    )
+    part.check(are_counts, "cylinders", f"two counts up to {CYLINDER_LIMIT}, the lesser first")
     legs = part.count("legs", 1)
-    part.check(legs <= MOST_LEGS, "legs", f"at most {MOST_LEGS}")
-    return Crossings(slowest, fastest, int(fewest), int(most), legs)
+    part.check(legs <= LEG_LIMIT, "legs", f"at most {LEG_LIMIT}")
+    return CrossingCylinders(min_speed, max_speed, int(min_count), int(max_count), legs)

@@ -8,7 +8,7 @@ from typing import Tuple
 import numpy as np
 from scipy.ndimage import convolve
 
-from laboratory.tasks.ways import Ways
+from laboratory.tasks.shortest_paths import ShortestPaths
 from laboratory.worlds.barn import GOAL_IN_ODOM, START
 from laboratory.worlds.solids import FLOOR, post, wall
 from laboratory.worlds.source import Arena
@@ -19,18 +19,18 @@ from sim_bridge.world import World
 
 # Cells along each side of the field, and metres: of a cell, of a cylinder's radius, of the robot's that a way
 # must be wide enough for; where the field's middle is, and what its walls reach from and to.
-CELLS, CELL, RADIUS, ROOM = 30, 0.15, 0.075, 0.3
+CELLS, CELL, RADIUS, ROBOT_CLEARANCE = 30, 0.15, 0.075, 0.3
 MIDDLE_XY, WALL_Y = (-2.25, 7.25), (0.5, 14.5)
 # Shares of cells that are filled at first, and how often the automaton smooths them.
-LEAST_FILL, MOST_FILL, SMOOTHINGS = 0.18, 0.34, (2, 4)
+MIN_FILL, MAX_FILL, SMOOTHINGS = 0.18, 0.34, (2, 4)
 # Of eight neighbours filled, from which on a cell fills, and up to which it empties.
-FILLS, EMPTIES = 5, 1
+BIRTH_NEIGHBOURS, DEATH_NEIGHBOURS = 5, 1
 _STREAM = 44
 _NEIGHBOURS = np.array([[1, 1, 1], [1, 0, 1], [1, 1, 1]])
 
 
 @dataclass(frozen=True)
-class Fields:
+class CylinderFields:
     """BARN's start and goal, between walls, and what a cellular automaton grew in between."""
 
     def arena(self, seed: int) -> Arena:
@@ -48,19 +48,19 @@ def _arena(seed: int) -> Arena:
     rng = np.random.default_rng([seed, _STREAM])
     goal = START @ GOAL_IN_ODOM
     while True:  # until there is a way through
-        world = _world(seed, grown(rng))
+        world = _world(seed, grow_cells(rng))
         grid = true_map(world, inside=(START.x, START.y))
-        way = Ways(grid, ROOM).length((START, goal))
-        if way is not None:
-            return Arena(world, None, world.name, way)
+        reference_length = ShortestPaths(grid, ROBOT_CLEARANCE).length((START, goal))
+        if reference_length is not None:
+            return Arena(world, None, world.name, reference_length)
 
 
-def grown(rng: np.random.Generator) -> np.ndarray:
+def grow_cells(rng: np.random.Generator) -> np.ndarray:
     """Which cells are filled, (CELLS, CELLS)."""
-    cells = rng.random((CELLS, CELLS)) < rng.uniform(LEAST_FILL, MOST_FILL)
+    cells = rng.random((CELLS, CELLS)) < rng.uniform(MIN_FILL, MAX_FILL)
     for _ in range(rng.integers(*SMOOTHINGS, endpoint=True)):
-        around = convolve(cells.astype(int), _NEIGHBOURS, mode="constant")
-        cells = (cells | (around >= FILLS)) & (around > EMPTIES)
+        neighbours = convolve(cells.astype(int), _NEIGHBOURS, mode="constant")
+        cells = (cells | (neighbours >= BIRTH_NEIGHBOURS)) & (neighbours > DEATH_NEIGHBOURS)
     return cells
 
 
@@ -79,8 +79,8 @@ def _world(seed: int, cells: np.ndarray) -> World:
     return World(f"field {seed}", (FLOOR, *walls, *posts))
 
 
-def read_fields(table: Table, folder: Path) -> Fields:
+def read_fields(table: Table, folder: Path) -> CylinderFields:
     """``fields: cylinders``."""
     table.allow_only("fields")
     table.choice("fields", ("cylinders",))
-    return Fields()
+    return CylinderFields()

@@ -5,28 +5,28 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from laboratory.generators.buildings import Buildings, Plan
-from laboratory.generators.furniture import Furniture, Style
-from laboratory.generators.rooms import Room, floor_plan
+from laboratory.generators.buildings import BuildingGenerator, BuildingLayout
+from laboratory.generators.floor_plan import Rectangle, generate_floor_plan
+from laboratory.generators.furniture import Furniture, FurnitureStyle
 
 AREAS = 30.0, 300.0
-PIECE, AREA_OF_A_PIECE = Style((0.4, 1.8), (0.4, 1.8)), 5.0
+PIECE, AREA_OF_A_PIECE = FurnitureStyle((0.4, 1.8), (0.4, 1.8)), 5.0
 
 
 @dataclass(frozen=True)
-class Homes(Buildings):
+class Homes(BuildingGenerator):
     """Rectangles cut into rooms that doors connect."""
 
     kind, stream, areas = "home", 42, AREAS
-    least: float = AREAS[0]
-    largest: float = AREAS[1]
+    min_area: float = AREAS[0]
+    max_area: float = AREAS[1]
 
-    def draw(self, area: float, rng: np.random.Generator) -> Plan:
+    def layout(self, area: float, rng: np.random.Generator) -> BuildingLayout:
         width = math.sqrt(area * rng.uniform(0.7, 1.4))
-        outline = Room(0.0, 0.0, width, area / width)
-        floor = floor_plan(outline, rng)
+        outline = Rectangle(0.0, 0.0, width, area / width)
+        floor = generate_floor_plan(outline, rng)
         start = floor.rooms[int(rng.integers(len(floor.rooms)))].middle
         furniture = Furniture(outline, floor.solids, start)
         for room in floor.rooms:
             furniture.fill(room, AREA_OF_A_PIECE, lambda room: PIECE.piece(room, rng))
-        return Plan(floor.solids, furniture.pieces, start, floor.doorways)
+        return BuildingLayout(floor.solids, furniture.pieces, start, floor.doorways)

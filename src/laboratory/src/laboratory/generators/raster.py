@@ -33,7 +33,7 @@ class Raster:
         """Which cells are, bool (rows, cols)."""
         return self._solid
 
-    def within_reach(self, x: float, y: float, radius: float) -> np.ndarray:
+    def reachable_from(self, x: float, y: float, radius: float) -> np.ndarray:
         """The cells that the middle of a robot of that radius can come to from a place, bool (rows, cols)."""
         regions, _ = label(distance_field(self._solid, RESOLUTION) > radius)
         here = regions[_cell(x, y)]

@@ -5,7 +5,7 @@ from typing import List, Sequence
 
 import numpy as np
 
-from laboratory.results.result import Result, track_of
+from laboratory.results.result import RunResult, track_of
 from laboratory.scenario.scenario import Scenario
 from laboratory.worlds.source import Arena
 from planar import OccupancyGrid
@@ -17,12 +17,12 @@ from sim_bridge.views.true_map import true_map
 SQUARE = 0.5
 
 
-def picture(scenario: Scenario, result: Result) -> str:
+def run_map(scenario: Scenario, result: RunResult) -> str:
     """The world of a run, with its true way."""
     return map_svg(RunRecord(grid=_grid(scenario.arena(result.seed), result), truth=track_of(result)))
 
 
-def heat_map(scenario: Scenario, failures: Sequence[Result]) -> str:
+def heat_map(scenario: Scenario, failures: Sequence[RunResult]) -> str:
     """Where runs of the same world ended that failed: the redder a square, the more."""
     ends = [(run.end_x, run.end_y) for run in failures if run.end_x is not None and run.end_y is not None]
     squares = Counter(tuple(np.floor(np.array(end) / SQUARE).astype(int).tolist()) for end in ends)
@@ -38,7 +38,7 @@ def heat_map(scenario: Scenario, failures: Sequence[Result]) -> str:
     return map_svg(RunRecord(grid=grid), "".join(drawn))
 
 
-def _grid(arena: Arena, result: Result) -> OccupancyGrid:
+def _grid(arena: Arena, result: RunResult) -> OccupancyGrid:
     """What is solid in the world of a run, also where the robot's map does not show it."""
     _, x, y, _ = track_of(result)[0].tolist()
     return true_map(arena.world, inside=(x, y))

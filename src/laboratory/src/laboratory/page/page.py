@@ -4,15 +4,15 @@ import shlex
 from html import escape
 from typing import Any, Dict, List, Sequence, Tuple
 
-from laboratory.page.maps import heat_map, picture
-from laboratory.results.result import Result
+from laboratory.page.maps import heat_map, run_map
+from laboratory.results.result import RunResult
 from laboratory.scenario.scenario import Scenario
 from laboratory.statistics.comparison import Comparison, compare
 from laboratory.suites import FOLDER
 from run_report.page import document, table, tiles
 
 # Failing runs of a scenario, and worlds with a heat map, that are drawn.
-MOST_PICTURES, MOST_MAPS = 24, 6
+MAX_RUN_MAPS, MAX_HEAT_MAPS = 24, 6
 HEADS = ("planner", "runs", "success", "collisions", "time, s", "SPL", "clearance, m", "beside the first")
 FIGURES = ("seconds", "spl", "clearance")
 
@@ -32,23 +32,23 @@ def page_html(evaluated: Sequence[Any], version: str) -> str:
     for name, planners in by_name.items():
         body.append(_leaderboard(name, planners))
         body += [_failures(each) for each in planners]
-        body += [_worth_a_look(each) for each in planners]
+        body += [_notable_runs(each) for each in planners]
     return document("The laboratory", "".join(body))
 
 
-def verdict(comparison: Comparison) -> str:
+def comparison_text(comparison: Comparison) -> str:
     """What a comparison says, in words."""
     if not comparison.pairs:
         return "no seeds in common"
     counts = f"+{comparison.gained} −{comparison.lost}, p {comparison.p_success:.2g}"
-    told = f"success: {comparison.success} ({counts})"
+    text = f"success: {comparison.success} ({counts})"
     if comparison.seconds is None:
-        return told
+        return text
     delay, p_seconds = comparison.seconds, comparison.p_seconds
-    return f"{told}; time: {comparison.time} ({delay.value:+.2f} s, p {p_seconds:.2g})"
+    return f"{text}; time: {comparison.time} ({delay.value:+.2f} s, p {p_seconds:.2g})"
 
 
-def command_of(scenario: Scenario, seed: int) -> str:
+def repeat_command(scenario: Scenario, seed: int) -> str:
     """What repeats a run."""
     is_given = scenario.file.parent == FOLDER
     words = ["./scripts/play.sh", scenario.name if is_given else str(scenario.file), "--seed", str(seed)]
@@ -58,16 +58,16 @@ def command_of(scenario: Scenario, seed: int) -> str:
 
 def _leaderboard(name: str, planners: Sequence[Any]) -> str:
     """The surest success first."""
-    told = [(each, each.summary) for each in planners]
-    ranked = sorted(told, key=lambda row: -row[1].figures["success"].low)
+    text = [(each, each.summary) for each in planners]
+    ranked = sorted(text, key=lambda row: -row[1].figures["success"].low)
     first = planners[0]
     rows = []
     for each, summary in ranked:
         figures = [str(summary.figures.get(figure, "")) for figure in FIGURES]
-        beside = "" if each is first else verdict(compare(first.results, each.results))
+        comparison = "" if each is first else comparison_text(compare(first.results, each.results))
         planner = each.scenario.planner or "the robot's own"
         success, collisions = summary.figures["success"], summary.outcomes["collision"]
-        rows.append((planner, summary.runs, success, collisions, *figures, beside))
+        rows.append((planner, summary.runs, success, collisions, *figures, comparison))
     about = f"<p>{escape(planners[0].scenario.about)}</p>"
     filled = [(head, cells) for head, *cells in zip(HEADS, *rows) if any(map(str, cells))]
     board = table([head for head, _ in filled], list(zip(*(cells for _, cells in filled))))
@@ -80,45 +80,45 @@ def _failures(each: Any) -> str:
     if not failed:
         return ""
     drawn = [result for result in failed if result.track]
-    worlds: Dict[int, List[Result]] = {}
+    worlds: Dict[int, List[RunResult]] = {}
     for result in drawn:
         worlds.setdefault(result.arena_number, []).append(result)
-    fullest = sorted(worlds.values(), key=lambda runs: -len(runs))[:MOST_MAPS]
+    fullest = sorted(worlds.values(), key=lambda runs: -len(runs))[:MAX_HEAT_MAPS]
     maps = [
         _card(f"{runs[0].arena}: where {len(runs)} failed", heat_map(each.scenario, runs)) for runs in fullest
     ]
-    cards = [_run(each.scenario, result) for result in drawn[:MOST_PICTURES]]
-    rows = [(run.seed, run.outcome, run.reason, command_of(each.scenario, run.seed)) for run in failed]
+    cards = [_run(each.scenario, result) for result in drawn[:MAX_RUN_MAPS]]
+    rows = [(run.seed, run.outcome, run.reason, repeat_command(each.scenario, run.seed)) for run in failed]
     listed = table(("seed", "outcome", "why", "again"), rows)
     title = f"<h2>{escape(each.scenario.label)}: {len(failed)} of {len(each.results)} failed</h2>"
-    return f'<section class="card">{title}{listed}</section>' + _grid_of(maps) + _grid_of(cards)
+    return f'<section class="card">{title}{listed}</section>' + _card_grid(maps) + _card_grid(cards)
 
 
-def _worth_a_look(each: Any) -> str:
+def _notable_runs(each: Any) -> str:
     """The slowest run that succeeded, and the one that came nearest to something solid."""
     won = [result for result in each.results if result.is_success]
-    chosen: List[Tuple[str, Result]] = []
+    chosen: List[Tuple[str, RunResult]] = []
     if won:
         chosen.append(("the slowest success", max(won, key=lambda run: run.seconds or 0.0)))
     near = [result for result in won if result.clearance is not None]
     if near:
         chosen.append(("the nearest to something", min(near, key=lambda run: run.clearance or 0.0)))
-    return _grid_of([_run(each.scenario, run, f"{title}: ") for title, run in chosen])
+    return _card_grid([_run(each.scenario, run, f"{title}: ") for title, run in chosen])
 
 
-def _run(scenario: Scenario, result: Result, title: str = "") -> str:
-    told = f"{title}{scenario.label}, seed {result.seed}: {result.outcome}"
+def _run(scenario: Scenario, result: RunResult, title: str = "") -> str:
+    text = f"{title}{scenario.label}, seed {result.seed}: {result.outcome}"
     figures = "" if result.seconds is None else f" after {result.seconds:.1f} s, {result.driven:.1f} m"
-    drawn = picture(scenario, result) if result.track else ""
-    command = f"<p><code>{escape(command_of(scenario, result.seed))}</code></p>"
-    return _card(f"{told}{figures}", f"<p>{escape(result.reason)}</p>{drawn}{command}")
+    drawn = run_map(scenario, result) if result.track else ""
+    command = f"<p><code>{escape(repeat_command(scenario, result.seed))}</code></p>"
+    return _card(f"{text}{figures}", f"<p>{escape(result.reason)}</p>{drawn}{command}")
 
 
 def _card(title: str, content: str) -> str:
     return f'<div class="card"><h2>{escape(title)}</h2>{content}</div>'
 
 
-def _grid_of(cards: Sequence[str]) -> str:
+def _card_grid(cards: Sequence[str]) -> str:
     """Two cards a row."""
     pairs = [cards[number : number + 2] for number in range(0, len(cards), 2)]
     return "".join(f'<section class="even columns">{"".join(pair)}</section>' for pair in pairs)

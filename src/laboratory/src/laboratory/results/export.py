@@ -5,12 +5,12 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Iterable, Sequence, Tuple
 
-from laboratory.results.result import Result
+from laboratory.results.result import RunResult
 from laboratory.scenario.scenario import Scenario
 from planar.files.atomically import write_all_atomically
 
 
-def export(runs: Iterable[Tuple[Scenario, Sequence[Result]]], folder: Path) -> None:
+def export(runs: Iterable[Tuple[Scenario, Sequence[RunResult]]], folder: Path) -> None:
     """Writes results.csv and results.parquet, a row a run, without tracks. Raises FileWriteError."""
     import pandas
 

@@ -7,8 +7,8 @@ from typing import NamedTuple, Optional
 
 import numpy as np
 
-from laboratory.results.people import manners, seconds_still
-from laboratory.tasks.task import COLLISION, ERROR, SUCCESS, Play
+from laboratory.results.social_metrics import seconds_still, social_metrics
+from laboratory.tasks.task import COLLISION, ERROR, SUCCESS, RunTrace
 from laboratory.worlds.source import Arena
 from planar import OCCUPIED, OccupancyGrid, wrap
 from planar.geometry.distance_field import distance_field
@@ -17,7 +17,7 @@ from sim_bridge.views.true_map import true_map
 from sim_bridge.world import World
 
 
-class Key(NamedTuple):
+class RunKey(NamedTuple):
     """What a result is of: the digest of a scenario, a seed, the version of the software."""
 
     digest: str
@@ -26,14 +26,14 @@ class Key(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Result:
+class RunResult:
     """Lengths in metres, ``seconds`` simulated; what a run has not is None.
 
     ``way``: the shortest that there was, ``clearance``: the least between the robot's middle and anything
     solid, ``turning``: rad turned for each metre driven, ``score``: of a benchmark. ``hash``: the same for
     two runs only if every bit of their true trajectories is. ``track``: (N, 4) float32, thinned, as bytes.
     ``still``: seconds without moving. ``ran_into_robot``: how many people did; what follows it is told in
-    laboratory.results.people.
+    laboratory.results.social_metrics.
     """
 
     digest: str
@@ -71,45 +71,47 @@ class Result:
         return self.outcome == SUCCESS
 
 
-MOST_TRACKED = 400
+MAX_TRACK_POSES = 400
 
 
-def result_of(play: Play, arena: Arena, arena_number: int, key: Key, wall_seconds: float) -> Result:
+def measured_result(
+    trace: RunTrace, arena: Arena, arena_number: int, key: RunKey, wall_seconds: float
+) -> RunResult:
     """Measures a run."""
-    track = play.trajectory
+    track = trace.trajectory
     steps = np.diff(track, axis=0)
     driven = float(np.hypot(steps[:, 1], steps[:, 2]).sum())
-    errors = play.localization_error
-    return Result(
+    errors = trace.localization_error
+    return RunResult(
         **key._asdict(),
-        outcome=play.outcome,
-        reason=play.reason,
+        outcome=trace.outcome,
+        reason=trace.reason,
         arena=arena.title,
         arena_number=arena_number,
         seconds=float(track[-1, 0]),
         driven=driven,
-        way=play.way,
+        way=trace.reference_length,
         clearance=clearance(arena.world, track),
         turning=float(np.abs(wrap(steps[:, 3])).sum()) / driven if driven > 0.0 else None,
         localization_mean=float(errors.mean()) if len(errors) else None,
         localization_max=float(errors.max()) if len(errors) else None,
-        score=play.score,
-        collisions=len(set(play.touched)) or int(play.outcome == COLLISION),
+        score=trace.score,
+        collisions=len(set(trace.collisions)) or int(trace.outcome == COLLISION),
         end_x=float(track[-1, 1]),
         end_y=float(track[-1, 2]),
         hash=hashlib.sha256(np.ascontiguousarray(track).tobytes()).hexdigest()[:16],
         wall_seconds=wall_seconds,
         track=thinned(track).astype(np.float32).tobytes(),
         still=seconds_still(track),
-        ran_into_robot=len(play.ran_into_robot) if arena.world.walkers else None,
-        **asdict(manners(track, play.people)),
+        ran_into_robot=len(trace.people_at_fault) if arena.world.walkers else None,
+        **asdict(social_metrics(track, trace.people)),
     )
 
 
-def error_of(error: BaseException, key: Key) -> Result:
+def error_result(error: BaseException, key: RunKey) -> RunResult:
     """A run that could not be played."""
     text = str(error) or type(error).__name__
-    return Result(**key._asdict(), outcome=ERROR, reason=text.splitlines()[0])
+    return RunResult(**key._asdict(), outcome=ERROR, reason=text.splitlines()[0])
 
 
 def clearance(world: World, track: np.ndarray) -> Optional[float]:
@@ -135,11 +137,11 @@ def _distances(world: World, x: float, y: float):
 
 def thinned(rows: np.ndarray) -> np.ndarray:
     """At most MOST_TRACKED rows, evenly chosen, the first and the last among them."""
-    if len(rows) <= MOST_TRACKED:
+    if len(rows) <= MAX_TRACK_POSES:
         return rows
-    return rows[np.linspace(0, len(rows) - 1, MOST_TRACKED).round().astype(int)]
+    return rows[np.linspace(0, len(rows) - 1, MAX_TRACK_POSES).round().astype(int)]
 
 
-def track_of(result: Result) -> np.ndarray:
+def track_of(result: RunResult) -> np.ndarray:
     """(N, 4) stamp, x, y, yaw."""
     return np.frombuffer(result.track, dtype=np.float32).reshape(-1, 4)

@@ -7,25 +7,25 @@ from pathlib import Path
 from typing import Any, Dict, Iterator, List, Optional, Set, Tuple
 
 from laboratory.errors import ResultsError
-from laboratory.results.result import Result
+from laboratory.results.result import RunResult
 from laboratory.tasks.task import ERROR
 
 SCHEMA = 1
 KINDS: Dict[Any, str] = {int: "INTEGER", float: "REAL", str: "TEXT", bytes: "BLOB"}
 KINDS.update({Optional[int]: "INTEGER", Optional[float]: "REAL"})
-COLUMNS = {field.name: KINDS[field.type] for field in fields(Result)}
+COLUMNS = {field.name: KINDS[field.type] for field in fields(RunResult)}
 # Seconds that another writer is waited for.
-PATIENCE = 30.0
+BUSY_TIMEOUT = 30.0
 
 
-class Store:
+class ResultStore:
     """The results of a file, which is made if it is not there. Methods raise ResultsError."""
 
     def __init__(self, path: Path):
         self._path = path
-        with self._telling():
+        with self._raising_results_error():
             path.parent.mkdir(parents=True, exist_ok=True)
-            self._connection = sqlite3.connect(str(path), timeout=PATIENCE, isolation_level=None)
+            self._connection = sqlite3.connect(str(path), timeout=BUSY_TIMEOUT, isolation_level=None)
             self._connection.execute("PRAGMA journal_mode=WAL")
             self._connection.execute("PRAGMA synchronous=NORMAL")
             self._prepare()
@@ -33,31 +33,31 @@ class Store:
     def close(self) -> None:
         self._connection.close()
 
-    def add(self, result: Result) -> None:
+    def add(self, result: RunResult) -> None:
         """Keeps a result; one of the same scenario, seed and version is replaced."""
-        marks = ", ".join("?" * len(COLUMNS))
-        with self._telling():
+        placeholders = ", ".join("?" * len(COLUMNS))
+        with self._raising_results_error():
             columns = ", ".join(COLUMNS)
             self._connection.execute(
-                f"INSERT OR REPLACE INTO results ({columns}) VALUES ({marks})", astuple(result)
+                f"INSERT OR REPLACE INTO results ({columns}) VALUES ({placeholders})", astuple(result)
             )
 
-    def played(self, version: str) -> Set[Tuple[str, int]]:
+    def completed(self, version: str) -> Set[Tuple[str, int]]:
         """Digests and seeds of what has been played; errors are worth another try."""
         query = "SELECT digest, seed FROM results WHERE version = ? AND outcome != ?"
-        with self._telling():
+        with self._raising_results_error():
             return set(self._connection.execute(query, (version, ERROR)).fetchall())
 
-    def results(self, digest: str, version: str) -> List[Result]:
+    def results(self, digest: str, version: str) -> List[RunResult]:
         """Those of a scenario, in the order of their seeds."""
         query = f"SELECT {', '.join(COLUMNS)} FROM results WHERE digest = ? AND version = ? ORDER BY seed"
-        with self._telling():
-            return [Result(*row) for row in self._connection.execute(query, (digest, version))]
+        with self._raising_results_error():
+            return [RunResult(*row) for row in self._connection.execute(query, (digest, version))]
 
     def versions(self) -> List[str]:
         """Of all results, the latest last."""
         query = "SELECT version FROM results GROUP BY version ORDER BY MAX(rowid)"
-        with self._telling():
+        with self._raising_results_error():
             return [version for (version,) in self._connection.execute(query)]
 
     def _prepare(self) -> None:
@@ -67,13 +67,15 @@ class Store:
         columns = ", ".join(f"{name} {kind}" for name, kind in COLUMNS.items())
         key = "PRIMARY KEY (digest, seed, version)"
         self._connection.execute(f"CREATE TABLE IF NOT EXISTS results ({columns}, {key})")
-        known = {column[1] for column in self._connection.execute("PRAGMA table_info(results)")}
-        for name in [each for each in COLUMNS if each not in known]:  # of a file from before they were told
+        existing = {column[1] for column in self._connection.execute("PRAGMA table_info(results)")}
+        for name in [
+            each for each in COLUMNS if each not in existing
+        ]:  # of a file from before they were told
             self._connection.execute(f"ALTER TABLE results ADD COLUMN {name} {COLUMNS[name]}")
         self._connection.execute(f"PRAGMA user_version = {SCHEMA}")
 
     @contextmanager
-    def _telling(self) -> Iterator[None]:
+    def _raising_results_error(self) -> Iterator[None]:
         try:
             yield
         except (sqlite3.Error, OSError) as error:

@@ -1,6 +1,6 @@
 """Scenarios: what is played, as data."""
 
-from laboratory.scenario.reading import read_scenario
+from laboratory.scenario.reader import read_scenario
 from laboratory.scenario.scenario import OFFICIAL, Scenario
 
 __all__ = ["OFFICIAL", "Scenario", "read_scenario"]

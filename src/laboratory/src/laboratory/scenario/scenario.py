@@ -1,17 +1,14 @@
 """What is played: a world, a robot in it, a task, what happens meanwhile, who plans, limits, seeds."""
 
-import hashlib
-import json
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Mapping, Tuple, Union
 
-from laboratory.results.version import version_over_ros
+from laboratory.scenario.digest import scenario_digest
 from laboratory.tasks.task import Task
-from laboratory.worlds.people import People, with_people
+from laboratory.worlds.people import Pedestrians, with_people
 from laboratory.worlds.source import Arena, WorldSource
 from planar import Pose2
-from planar.plugins import source_files
 from sim_bridge import SimulationSettings
 from sim_bridge.doorway import Door
 from sim_bridge.faults import Fault
@@ -40,7 +37,7 @@ class Scenario:
     boxes: int = 0
     boxes_at: Tuple[Pose2, ...] = ()
     doors: Union[int, Tuple[Door, ...]] = 0
-    people: People = People()
+    people: Pedestrians = Pedestrians()
     faults: Tuple[Fault, ...] = ()
     planner: str = ""
     parameters: Mapping[str, Any] = field(default_factory=dict)
@@ -63,18 +60,8 @@ class Scenario:
         return f"{name} over ROS" if self.is_over_ros else name
 
     def digest(self) -> str:
-        """The same for two scenarios only if they are played alike: of all they say, of their files, and of
-        the sources of other people's planners, faults and worlds.
-
-        Its name, what it is about and its seeds do not count. Raises PlanarError if a file is not there.
-        """
-        told = asdict(replace(self, name="", about="", seeds=(), file=Path()))
-        kinds = [type(self.world).__name__, type(self.task).__name__]
-        own = source_files((self.planner, *(fault.kind for fault in self.faults)))
-        files = [_content(path) for path in (*self.world.files(), *self.task.files(), *own)]
-        software = [version_over_ros()] if self.is_over_ros else []
-        text = json.dumps([kinds, files, software, told], sort_keys=True, default=_nameless)
-        return hashlib.sha256(text.encode()).hexdigest()[:16]
+        """Digest of all that changes a run: see ``scenario_digest``."""
+        return scenario_digest(self)
 
     def arena(self, seed: int) -> Arena:
         """The world of a seed, with what stands about in it. Raises PlanarError."""
@@ -85,25 +72,11 @@ class Scenario:
         if isinstance(self.doors, tuple):
             arena = with_doors_at(arena, self.doors)
         elif self.doors:
-            arena = with_doors(arena, self.doors, seed, (self.start, *self.task.places(arena)))
+            arena = with_doors(arena, self.doors, seed, (self.start, *self.task.required_poses(arena)))
         if self.boxes:
-            arena = with_boxes(arena, self.boxes, seed, (self.start, *self.task.places(arena)))
+            arena = with_boxes(arena, self.boxes, seed, (self.start, *self.task.required_poses(arena)))
         if self.boxes_at:
             arena = with_boxes_at(arena, self.boxes_at)
         if self.people.count:
-            arena = with_people(arena, self.people, seed, self.start, self.task.places(arena))
+            arena = with_people(arena, self.people, seed, self.start, self.task.required_poses(arena))
         return arena
-
-
-def _nameless(value: Any) -> Any:
-    """Where a file lies does not matter."""
-    return None if isinstance(value, Path) else str(value)
-
-
-def _content(path: Path) -> str:
-    from planar import SettingsError
-
-    try:
-        return hashlib.sha256(path.read_bytes()).hexdigest()
-    except OSError as error:
-        raise SettingsError(f"{path}: {error.strerror}") from None

@@ -4,10 +4,10 @@ from typing import List, Tuple
 
 from planar import SettingsError
 
-MOST_SEEDS = 1_000_000
+MAX_SEEDS = 1_000_000
 
 
-def seeds_of(text: str) -> Tuple[int, ...]:
+def parse_seeds(text: str) -> Tuple[int, ...]:
     """The seeds that a text names, in its order. Raises SettingsError."""
     seeds: List[int] = []
     for part in text.split(","):
@@ -15,8 +15,8 @@ def seeds_of(text: str) -> Tuple[int, ...]:
         if not _is_number(first) or (dash and not _is_number(last)):
             raise SettingsError(f"seeds must be like 0-999 or 1,5,7, got {text!r}")
         start, end = int(first), int(last) if dash else int(first)
-        if end < start or len(seeds) + end - start >= MOST_SEEDS:
-            raise SettingsError(f"seeds must be like 0-999, at most {MOST_SEEDS} of them, got {text!r}")
+        if end < start or len(seeds) + end - start >= MAX_SEEDS:
+            raise SettingsError(f"seeds must be like 0-999, at most {MAX_SEEDS} of them, got {text!r}")
         seeds.extend(range(start, end + 1))
     return tuple(dict.fromkeys(seeds))
 

@@ -39,15 +39,15 @@ class Study:
         self,
         trials: int,
         costs_of: Callable[[Sequence[Values]], Sequence[float]],
-        is_enough: Callable[[], bool] = lambda: False,
+        is_done: Callable[[], bool] = lambda: False,
     ) -> None:
         """Goes on until so many have been told of, or it ``is_enough`` after a batch.
 
         ``costs_of``: of the values of a batch, the lower the better.
         """
-        self._give_up_what_was_stopped()
-        while len(self._told()) < trials and not is_enough():
-            done = len(self._told())
+        self._fail_interrupted_trials()
+        while len(self._completed_trials()) < trials and not is_done():
+            done = len(self._completed_trials())
             self._study.sampler = optuna.samplers.TPESampler(
                 seed=hash((self._seed, done)) % 2**32, multivariate=True, constant_liar=True
             )
@@ -60,9 +60,9 @@ class Study:
         """The values of the least cost so far; of equals, the first."""
         return self._study.best_params
 
-    def _told(self) -> List[Any]:
+    def _completed_trials(self) -> List[Any]:
         return self._study.get_trials(deepcopy=False, states=(TrialState.COMPLETE,))
 
-    def _give_up_what_was_stopped(self) -> None:
+    def _fail_interrupted_trials(self) -> None:
         for trial in self._study.get_trials(deepcopy=False, states=(TrialState.RUNNING,)):
             self._study.tell(trial.number, state=TrialState.FAIL)

@@ -9,8 +9,8 @@ from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 import yaml
 from optuna.distributions import BaseDistribution, FloatDistribution
 
-from laboratory.evaluation import Evaluated, Evaluation
-from laboratory.results.result import Result
+from laboratory.evaluation import EvaluatedScenario, Evaluation
+from laboratory.results.result import RunResult
 from laboratory.results.version import version
 from laboratory.scenario.scenario import Scenario
 from laboratory.search.study import Study
@@ -56,7 +56,7 @@ def with_values(scenario: Scenario, values: Values) -> Scenario:
     return scenario.with_parameters(merged(scenario.parameters, nested(values)))
 
 
-def cost(scenario: Scenario, results: Sequence[Result]) -> float:
+def cost(scenario: Scenario, results: Sequence[RunResult]) -> float:
     """Mean simulated seconds of the runs; one that failed counts as one that used up all its time, twice."""
     seconds = [
         result.seconds if result.is_success and result.seconds is not None else 2.0 * scenario.seconds
@@ -65,14 +65,14 @@ def cost(scenario: Scenario, results: Sequence[Result]) -> float:
     return sum(seconds) / len(seconds)
 
 
-def costs(evaluated: Sequence[Evaluated], count: int) -> List[float]:
+def costs(evaluated: Sequence[EvaluatedScenario], count: int) -> List[float]:
     """Of ``count`` candidates, each of which has as many of the evaluated scenarios, in turn."""
     each = len(evaluated) // count
     groups = [evaluated[number * each : (number + 1) * each] for number in range(count)]
     return [sum(cost(one.scenario, one.results) for one in group) / each for group in groups]
 
 
-def text_of(values: Values) -> str:
+def parameter_file_text(values: Values) -> str:
     """As a file of parameters that move_base loads."""
     return yaml.safe_dump(nested(values), sort_keys=True)
 
@@ -101,15 +101,15 @@ class Tuning:
 
     def run(self, client: Any, trials: int) -> Values:
         """The best values of so many. Raises ResultsError, WorkersError."""
-        self._study.run(trials, lambda batch: self._play(client, batch))
+        self._study.run(trials, lambda batch: self._evaluate(client, batch))
         return self._study.best
 
-    def _play(self, client: Any, batch: Sequence[Values]) -> List[float]:
+    def _evaluate(self, client: Any, batch: Sequence[Values]) -> List[float]:
         """What each of a batch costs."""
         candidates = [with_values(each, values) for values in batch for each in self._scenarios]
         evaluation = Evaluation(candidates, self._seeds, self._folder / RESULTS)
         try:
-            evaluation.play_on(client)
+            evaluation.run_on(client)
             told = costs(evaluation.evaluated(), len(batch))
         finally:
             evaluation.close()

@@ -7,10 +7,10 @@ import numpy as np
 from scipy.stats import wilcoxon
 from statsmodels.stats.contingency_tables import mcnemar
 
-from laboratory.results.result import Result
-from laboratory.statistics.summary import CONFIDENCE, Estimate, mean
+from laboratory.results.result import RunResult
+from laboratory.statistics.summary import CONFIDENCE, ConfidenceInterval, mean
 
-BETTER, WORSE, CANNOT_TELL = "better", "worse", "cannot tell"
+BETTER, WORSE, NOT_SIGNIFICANT = "better", "worse", "cannot tell"
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class Comparison:
     gained: int
     lost: int
     p_success: float
-    seconds: Optional[Estimate] = None
+    seconds: Optional[ConfidenceInterval] = None
     p_seconds: Optional[float] = None
 
     @property
@@ -38,13 +38,13 @@ class Comparison:
     def time(self) -> str:
         """The verdict on the time taken."""
         if self.seconds is None or self.p_seconds is None:
-            return CANNOT_TELL
+            return NOT_SIGNIFICANT
         return _verdict(self.p_seconds, -self.seconds.value)
 
 
-def compare(first: Sequence[Result], second: Sequence[Result]) -> Comparison:
+def compare(first: Sequence[RunResult], second: Sequence[RunResult]) -> Comparison:
     """Pairs runs by their seeds."""
-    of_second: Dict[int, Result] = {run.seed: run for run in second}
+    of_second: Dict[int, RunResult] = {run.seed: run for run in second}
     pairs = [(run, of_second[run.seed]) for run in first if run.seed in of_second]
     table = np.zeros((2, 2), dtype=int)
     for before, after in pairs:
@@ -60,5 +60,5 @@ def compare(first: Sequence[Result], second: Sequence[Result]) -> Comparison:
 
 def _verdict(p: float, gain: float) -> str:
     if p > 1.0 - CONFIDENCE or gain == 0:
-        return CANNOT_TELL
+        return NOT_SIGNIFICANT
     return BETTER if gain > 0 else WORSE

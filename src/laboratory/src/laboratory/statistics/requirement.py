@@ -4,7 +4,7 @@ import operator
 import re
 from typing import Mapping, NamedTuple
 
-from laboratory.statistics.summary import FIGURES, Estimate
+from laboratory.statistics.summary import FIGURES, ConfidenceInterval
 from planar import SettingsError
 from planar.config.hints import hint_or_choices
 
@@ -19,7 +19,7 @@ class Requirement(NamedTuple):
     relation: str
     limit: float
 
-    def is_met(self, figures: Mapping[str, Estimate]) -> bool:
+    def is_met(self, figures: Mapping[str, ConfidenceInterval]) -> bool:
         """Whether the figure is so; one that is not there is not."""
         found = figures.get(self.figure)
         return found is not None and bool(RELATIONS[self.relation](found.value, self.limit))
@@ -28,7 +28,7 @@ class Requirement(NamedTuple):
         return f"{self.figure} {self.relation} {self.limit:g}"
 
 
-def requirement_from(text: str) -> Requirement:
+def parse_requirement(text: str) -> Requirement:
     """Raises SettingsError."""
     match = FORM.fullmatch(text)
     try:

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.stats import bootstrap
 from statsmodels.stats.proportion import proportion_confint
 
-from laboratory.results.result import Result
+from laboratory.results.result import RunResult
 from laboratory.tasks.task import COLLISION, ERROR, FAILURE, OUTCOMES, TIMEOUT
 
 # Of intervals; and how often bootstrap draws, from which seed, how many at a time.
@@ -22,7 +22,7 @@ OF_PEOPLE = (
 )
 
 
-class Estimate(NamedTuple):
+class ConfidenceInterval(NamedTuple):
     """A figure and the interval that holds it with 95 % confidence; all the same if they cannot differ."""
 
     value: float
@@ -41,18 +41,18 @@ class Summary:
 
     runs: int
     outcomes: Dict[str, int]
-    figures: Dict[str, Estimate]
+    figures: Dict[str, ConfidenceInterval]
 
 
-def summary(results: Sequence[Result]) -> Summary:
+def summary(results: Sequence[RunResult]) -> Summary:
     """Of the runs of a scenario. Times and ways are those of the runs that succeeded."""
     outcomes = {name: sum(result.outcome == name for result in results) for name in OUTCOMES}
     figures = {name: share(count, len(results)) for name, count in outcomes.items()}
     won = [result for result in results if result.is_success]
-    rows: List[Tuple[str, Sequence[Result], Callable[[Result], Optional[float]]]] = [
+    rows: List[Tuple[str, Sequence[RunResult], Callable[[RunResult], Optional[float]]]] = [
         ("seconds", won, lambda run: run.seconds),
         ("driven", won, lambda run: run.driven),
-        ("spl", results, success_by_way),
+        ("spl", results, success_weighted_by_path_length),
         ("score", results, lambda run: run.score),
         ("clearance", results, lambda run: run.clearance),
         ("turning", won, lambda run: run.turning),
@@ -75,20 +75,20 @@ FIGURES = (
 )
 
 
-def share(count: int, total: int) -> Estimate:
+def share(count: int, total: int) -> ConfidenceInterval:
     """Wilson's interval (Wilson, 1927)."""
     if total == 0:
-        return Estimate(float("nan"), 0.0, 1.0)
+        return ConfidenceInterval(float("nan"), 0.0, 1.0)
     low, high = proportion_confint(count, total, alpha=1.0 - CONFIDENCE, method="wilson")
-    return Estimate(count / total, float(low), float(high))
+    return ConfidenceInterval(count / total, float(low), float(high))
 
 
-def mean(values: Sequence[float]) -> Estimate:
+def mean(values: Sequence[float]) -> ConfidenceInterval:
     """With the percentile interval of a seeded bootstrap (Efron, 1979)."""
     sample = np.asarray(values, dtype=float)
     middle = float(sample.mean())
     if len(sample) < 2 or np.ptp(sample) == 0.0:
-        return Estimate(middle, middle, middle)
+        return ConfidenceInterval(middle, middle, middle)
     interval = bootstrap(
         (sample,),
         np.mean,
@@ -98,15 +98,15 @@ def mean(values: Sequence[float]) -> Estimate:
         method="percentile",
         random_state=np.random.default_rng(SEED),
     ).confidence_interval
-    return Estimate(middle, float(interval.low), float(interval.high))
+    return ConfidenceInterval(middle, float(interval.low), float(interval.high))
 
 
-def success_by_way(run: Result) -> Optional[float]:
+def success_weighted_by_path_length(run: RunResult) -> Optional[float]:
     """Success weighted by the length of the way (SPL; Anderson et al., 2018)."""
     if run.way is None or run.driven is None:
         return None
     return run.is_success * run.way / max(run.way, run.driven)
 
 
-def _known(results: Sequence[Result], value: Callable[[Result], Optional[float]]) -> List[float]:
+def _known(results: Sequence[RunResult], value: Callable[[RunResult], Optional[float]]) -> List[float]:
     return [found for found in map(value, results) if found is not None]

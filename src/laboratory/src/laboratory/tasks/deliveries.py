@@ -13,8 +13,8 @@ from home_service.headless import (
     parcel_for,
 )
 from home_service.judging.verdict import collision
-from laboratory.tasks.task import COLLISION, FAILURE, SUCCESS, TIMEOUT, Play
-from laboratory.tasks.ways import shortest_way
+from laboratory.tasks.shortest_paths import shortest_path_length
+from laboratory.tasks.task import COLLISION, FAILURE, SUCCESS, TIMEOUT, RunTrace
 from laboratory.worlds.source import Arena
 from pick_objects import Mission, errand_mission, load_mission
 from planar import OccupancyGrid, Pose2, SettingsError
@@ -27,33 +27,38 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Deliveries:
+class DeliveryTask:
     """``zones``: the errand between its pick-up and its drop-off; with a ``mission`` that instead."""
 
     zones: Path
     mission: Optional[Path] = None
 
-    def play(self, scenario: "Scenario", arena: Arena, seed: int) -> Play:
+    def run(self, scenario: "Scenario", arena: Arena, seed: int) -> RunTrace:
         mission = self._mission(arena)
         parcel = None if self.mission else parcel_for(mission)
-        return replace(play_mission(scenario, arena, seed, mission, parcel), way=self.way(scenario, arena))
+        return replace(
+            run_mission(scenario, arena, seed, mission, parcel),
+            reference_length=self.reference_length(scenario, arena),
+        )
 
-    def places(self, arena: Arena) -> Sequence[Pose2]:
+    def required_poses(self, arena: Arena) -> Sequence[Pose2]:
         places = self._mission(arena).places.values()
         return [pose for place in places for pose in place.poses]
 
-    def way(self, scenario: "Scenario", arena: Arena) -> Optional[float]:
+    def reference_length(self, scenario: "Scenario", arena: Arena) -> Optional[float]:
         """Of the errand; in which order a mission is best carried out is not known here."""
         if self.mission is not None:
             return None
         robot = EpisodeConditions(parameters=scenario.parameters).navigation(NAVIGATION_CONFIG)
         ends = tuple(place.pose for place in load_pickup_and_dropoff(self.zones))
-        return shortest_way(_grid_of(arena), (scenario.start, *ends), robot.global_costmap.robot_radius)
+        return shortest_path_length(
+            _grid_of(arena), (scenario.start, *ends), robot.global_costmap.robot_radius
+        )
 
     def files(self) -> Tuple[Path, ...]:
         return (self.zones,) if self.mission is None else (self.zones, self.mission)
 
-    def files_for_nodes(self, arena: Arena, seed: int, folder: Path) -> Mapping[str, Path]:
+    def launch_files(self, arena: Arena, seed: int, folder: Path) -> Mapping[str, Path]:
         self._mission(arena)
         return {"zones_file": self.zones, **({"mission_file": self.mission} if self.mission else {})}
 
@@ -67,21 +72,21 @@ class Deliveries:
         return errand_mission(*ends)
 
 
-def play_mission(
+def run_mission(
     scenario: "Scenario", arena: Arena, seed: int, mission: Mission, parcel: Optional[CarriedParcel] = None
-) -> Play:
+) -> RunTrace:
     """Carries it out; ``parcel``: the marker of an errand. Raises PlanarError."""
-    stage = (arena.world, robot_named(scenario.robot), _grid_of(arena), mission)
-    rehearsal = HeadlessMission(*stage, seed=seed, parcel=parcel, conditions=_conditions(scenario))
-    run = rehearsal.run(scenario.seconds)
-    return Play(
+    inputs = (arena.world, robot_named(scenario.robot), _grid_of(arena), mission)
+    episode = HeadlessMission(*inputs, seed=seed, parcel=parcel, conditions=_conditions(scenario))
+    run = episode.run(scenario.seconds)
+    return RunTrace(
         _outcome(run, scenario.seconds),
         _reason(run),
         run.trajectory,
         run.localization_error,
         run.mission_record.collisions,
         people=run.people,
-        ran_into_robot=run.people_at_fault,
+        people_at_fault=run.people_at_fault,
     )
 
 
@@ -107,17 +112,17 @@ def _outcome(run: EpisodeResult, seconds: float) -> str:
 
 def _reason(run: EpisodeResult) -> str:
     """That of the verdict; and what it collided with, if that was not the end of it."""
-    touched, reason = collision(run.mission_record.collisions), run.verdict.reason
-    return reason if touched is None or touched in reason else f"{touched}; {reason}"
+    collisions, reason = collision(run.mission_record.collisions), run.verdict.reason
+    return reason if collisions is None or collisions in reason else f"{collisions}; {reason}"
 
 
-def read_errand(table: Table, folder: Path) -> Deliveries:
+def read_errand(table: Table, folder: Path) -> DeliveryTask:
     """``errand``: a file of zones."""
     table.allow_only("errand")
-    return Deliveries(table.path("errand", folder))
+    return DeliveryTask(table.path("errand", folder))
 
 
-def read_mission(table: Table, folder: Path) -> Deliveries:
+def read_mission(table: Table, folder: Path) -> DeliveryTask:
     """``mission``: a file of deliveries, between places of its own and of the ``zones``."""
     table.allow_only("mission", "zones")
-    return Deliveries(table.path("zones", folder), table.path("mission", folder))
+    return DeliveryTask(table.path("zones", folder), table.path("mission", folder))

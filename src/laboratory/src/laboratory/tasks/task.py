@@ -26,7 +26,7 @@ SUCCESS, FAILURE, COLLISION, TIMEOUT, ERROR = OUTCOMES = (
 
 
 @dataclass(frozen=True, eq=False)
-class Play:
+class RunTrace:
     """How a run went.
 
     ``trajectory``: (N, 4) stamp, true x, y, yaw. ``localization_error``: (M,), metres, of a robot with a map.
@@ -39,29 +39,29 @@ class Play:
     reason: str
     trajectory: np.ndarray
     localization_error: np.ndarray
-    touched: Sequence[str] = ()
-    way: Optional[float] = None
+    collisions: Sequence[str] = ()
+    reference_length: Optional[float] = None
     score: Optional[float] = None
     people: np.ndarray = field(default_factory=lambda: np.empty((0, 0, 5)))
-    ran_into_robot: Sequence[str] = ()
+    people_at_fault: Sequence[str] = ()
 
 
 class Task(Protocol):
     """Something to do in an arena; the same scenario and seed are played alike, to the last bit."""
 
-    def play(self, scenario: "Scenario", arena: Arena, seed: int) -> Play:
+    def run(self, scenario: "Scenario", arena: Arena, seed: int) -> RunTrace:
         """Plays it. Raises PlanarError if that is impossible."""
 
-    def places(self, arena: Arena) -> Sequence[Pose2]:
+    def required_poses(self, arena: Arena) -> Sequence[Pose2]:
         """Where the robot must be able to stand."""
 
-    def way(self, scenario: "Scenario", arena: Arena) -> Optional[float]:
+    def reference_length(self, scenario: "Scenario", arena: Arena) -> Optional[float]:
         """Metres of the shortest way that does it, if that is known."""
 
     def files(self) -> Tuple[Path, ...]:
         """What the task is read from."""
 
-    def files_for_nodes(self, arena: Arena, seed: int, folder: Path) -> Mapping[str, Path]:
+    def launch_files(self, arena: Arena, seed: int, folder: Path) -> Mapping[str, Path]:
         """The task as the launch files' ``zones_file`` and, if it is a mission, ``mission_file``.
 
         What is not there yet is written into ``folder``. Raises PlanarError if nodes cannot play it.

@@ -8,7 +8,7 @@ from typing import Tuple
 
 import numpy as np
 
-from laboratory.worlds.numbered import numbered_files
+from laboratory.worlds.files import numbered_files
 from laboratory.worlds.source import Arena
 from planar import Pose2, SettingsError
 from planar.config.yaml_table import Table
@@ -63,9 +63,9 @@ def _read_path(file: Path) -> np.ndarray:
     return cells
 
 
-def score(seconds: float, way: float) -> float:
+def score(seconds: float, reference_length: float) -> float:
     """BARN's score of a run that has arrived after ``seconds``; ``way``: metres of the reference path."""
-    optimal = way / REFERENCE_SPEED
+    optimal = reference_length / REFERENCE_SPEED
     return optimal / min(max(seconds, 2.0 * optimal), 8.0 * optimal)
 
 

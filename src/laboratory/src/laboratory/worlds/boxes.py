@@ -13,7 +13,7 @@ from sim_bridge.simulation import box_on_floor
 
 SIZE = (0.35, 0.35, 0.5)
 # Metres: from a box's middle to a wall, so that a robot gets past, to another box, and to start and goals.
-TO_WALL, TO_OTHERS, TO_PLACES = 0.75, 1.2, 1.0
+WALL_CLEARANCE, BOX_SPACING, GOAL_CLEARANCE = 0.75, 1.2, 1.0
 _STREAM = 41
 
 
@@ -23,15 +23,15 @@ def with_boxes(arena: Arena, count: int, seed: int, places: Sequence[Pose2]) -> 
     Raises SettingsError if the arena has no map or no room for them.
     """
     rng = np.random.default_rng([seed, _STREAM])
-    spots_xy = spots_for_boxes(arena, places)
+    free_xy = free_box_positions(arena, places)
     poses: List[Pose2] = []
     for number in range(count):
-        if not len(spots_xy):
+        if not len(free_xy):
             raise SettingsError(f"there is room for {number} boxes only, not for {count}")
-        x, y = spots_xy[rng.integers(len(spots_xy))]
+        x, y = free_xy[rng.integers(len(free_xy))]
         pose = Pose2(float(x), float(y), float(rng.uniform(-math.pi, math.pi)))
         poses.append(pose)
-        spots_xy = apart_from(spots_xy, pose)
+        free_xy = spaced_from(free_xy, pose)
     return with_boxes_at(arena, poses)
 
 
@@ -41,17 +41,17 @@ def with_boxes_at(arena: Arena, poses: Sequence[Pose2]) -> Arena:
     return replace(arena, world=replace(arena.world, bodies=(*arena.world.bodies, *boxes)))
 
 
-def spots_for_boxes(arena: Arena, places: Sequence[Pose2]) -> np.ndarray:
+def free_box_positions(arena: Arena, places: Sequence[Pose2]) -> np.ndarray:
     """Where a box leaves a way past, off ``places``; (N, 2). Raises SettingsError without a map."""
     if arena.grid is None:
         raise SettingsError("boxes need a world with a map")
     clearance = distance_field(arena.grid.cells != FREE, arena.grid.resolution)
-    spots_xy = arena.grid.points_of(np.argwhere(clearance > TO_WALL))
+    free_xy = arena.grid.points_of(np.argwhere(clearance > WALL_CLEARANCE))
     for place in places:
-        spots_xy = spots_xy[np.hypot(*(spots_xy - (place.x, place.y)).T) > TO_PLACES]
-    return spots_xy
+        free_xy = free_xy[np.hypot(*(free_xy - (place.x, place.y)).T) > GOAL_CLEARANCE]
+    return free_xy
 
 
-def apart_from(spots_xy: np.ndarray, box: Pose2) -> np.ndarray:
+def spaced_from(free_xy: np.ndarray, box: Pose2) -> np.ndarray:
     """Those of some spots (N, 2) where another leaves a way between."""
-    return spots_xy[np.hypot(*(spots_xy - (box.x, box.y)).T) > TO_OTHERS]
+    return free_xy[np.hypot(*(free_xy - (box.x, box.y)).T) > BOX_SPACING]

@@ -6,7 +6,7 @@ from typing import List, Sequence, Tuple, Union
 
 import numpy as np
 
-from laboratory.tasks.ways import ROOM_TO_PASS, regions
+from laboratory.tasks.shortest_paths import PASSAGE_CLEARANCE, connected_regions
 from laboratory.worlds.source import Arena
 from planar import OCCUPIED, OccupancyGrid, Pose2, SettingsError
 from planar.config.yaml_table import Table
@@ -14,11 +14,11 @@ from planar.maps.places import parse_pose
 from sim_bridge.doorway import Door
 
 # Simulated seconds within which each is shut.
-SHUT = (5.0, 60.0)
+CLOSING_TIMES = (5.0, 60.0)
 _STREAM = 49
 
 
-def with_doors(arena: Arena, most: int, seed: int, places: Sequence[Pose2]) -> Arena:
+def with_doors(arena: Arena, max_count: int, seed: int, places: Sequence[Pose2]) -> Arena:
     """The arena with so many of its doorways shut at some time, for good; fewer, if the others would part
     some of the ``places`` from each other.
 
@@ -30,12 +30,12 @@ def with_doors(arena: Arena, most: int, seed: int, places: Sequence[Pose2]) -> A
     grid = arena.grid
     doors: List[Door] = []
     for number in rng.permutation(len(arena.doorways)):
-        if len(doors) == most:
+        if len(doors) == max_count:
             break
-        door, start = arena.doorways[number], round(float(rng.uniform(*SHUT)), 1)
-        shut = _with_shut(grid, door)
-        if _are_connected(shut, places):
-            grid = shut
+        door, start = arena.doorways[number], round(float(rng.uniform(*CLOSING_TIMES)), 1)
+        closed_grid = _with_closed(grid, door)
+        if _are_connected(closed_grid, places):
+            grid = closed_grid
             doors.append(replace(door, start=start))
     return with_doors_at(arena, doors)
 
@@ -45,7 +45,7 @@ def with_doors_at(arena: Arena, doors: Sequence[Door]) -> Arena:
     return replace(arena, world=replace(arena.world, doors=(*arena.world.doors, *doors)))
 
 
-def _with_shut(grid: OccupancyGrid, door: Door) -> OccupancyGrid:
+def _with_closed(grid: OccupancyGrid, door: Door) -> OccupancyGrid:
     along = np.arange(-door.width / 2.0, door.width / 2.0, grid.resolution / 2.0)
     across = np.array((-math.sin(door.pose.yaw), math.cos(door.pose.yaw)))
     rows, cols = grid.cells_of((door.pose.x, door.pose.y) + along[:, None] * across).T
@@ -57,7 +57,7 @@ def _with_shut(grid: OccupancyGrid, door: Door) -> OccupancyGrid:
 def _are_connected(grid: OccupancyGrid, places: Sequence[Pose2]) -> bool:
     """Whether a robot gets from each to each."""
     rows, cols = grid.cells_of([(place.x, place.y) for place in places]).T
-    found = set(regions(grid, ROOM_TO_PASS)[rows, cols].tolist())
+    found = set(connected_regions(grid, PASSAGE_CLEARANCE)[rows, cols].tolist())
     return len(found) == 1 and found != {0}
 
 
@@ -67,10 +67,10 @@ def read_doors(happens: Table) -> Union[int, Tuple[Door, ...]]:
         return 0
     if not isinstance(happens.value("doors"), list):
         return happens.count("doors")
-    return tuple(_door(f"door_{number}", table) for number, table in enumerate(happens.tables("doors")))
+    return tuple(_read_door(f"door_{number}", table) for number, table in enumerate(happens.tables("doors")))
 
 
-def _door(name: str, table: Table) -> Door:
+def _read_door(name: str, table: Table) -> Door:
     table.allow_only("x", "y", "yaw", "width", "start", "end")
     width, start = table.number("width"), table.number("start", Door.start)
     table.check(0.0 < width <= 10.0, "width", "positive and at most 10 m")

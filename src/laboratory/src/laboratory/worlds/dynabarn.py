@@ -8,7 +8,7 @@ from typing import List, Tuple
 
 import numpy as np
 
-from laboratory.worlds.numbered import numbered_files
+from laboratory.worlds.files import numbered_files
 from laboratory.worlds.solids import FLOOR, post, wall
 from laboratory.worlds.source import Arena
 from planar import Pose2, SettingsError

@@ -1,14 +1,18 @@
 """A world of files: SDF and the map of it."""
 
+import re
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Optional, Tuple
+from typing import Dict, Optional, Tuple
 
 from laboratory.worlds.source import Arena
 from planar import load_map
 from planar.config.yaml_table import Table, read_table
 from sim_bridge import load_world
+
+# Levels of subfolders that are searched for numbered files.
+SEARCH_DEPTH = 3
 
 
 @dataclass(frozen=True)
@@ -41,3 +45,15 @@ def read_world_file(table: Table, folder: Path) -> WorldFile:
     table.allow_only("file", "map")
     known_map = table.path("map", folder) if "map" in table else None
     return WorldFile(table.path("file", folder), known_map)
+
+
+def numbered_files(folder: Path, stem: str, suffix: str) -> Dict[int, Path]:
+    """``<stem>_N<suffix>`` in a folder and not far below it, by N; none if that cannot be looked at."""
+    name = re.compile(rf"{stem}_([0-9]{{1,9}}){re.escape(suffix)}")
+    patterns = ["*/" * depth + f"{stem}_*{suffix}" for depth in range(SEARCH_DEPTH + 1)]
+    try:
+        found = [file for pattern in patterns for file in sorted(folder.glob(pattern))]
+    except (OSError, ValueError):  # no folder can have that name
+        return {}
+    matches = ((name.fullmatch(file.name), file) for file in found)
+    return {int(match[1]): file for match, file in matches if match}

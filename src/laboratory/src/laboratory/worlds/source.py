@@ -9,11 +9,13 @@ from pathlib import Path
 from typing import Optional, Protocol, Tuple
 
 from planar import OccupancyGrid
+from planar.deprecation import renamed_fields
 from planar.maps.places import NamedPlace
 from sim_bridge.doorway import Door
 from sim_bridge.world import World
 
 
+@renamed_fields(way="reference_length")
 @dataclass(frozen=True, eq=False)
 class Arena:
     """A world, and what is known of it.
@@ -26,7 +28,7 @@ class Arena:
     world: World
     grid: Optional[OccupancyGrid] = None
     title: str = ""
-    way: Optional[float] = None
+    reference_length: Optional[float] = None
     places: Tuple[NamedPlace, ...] = ()
     doorways: Tuple[Door, ...] = ()
 

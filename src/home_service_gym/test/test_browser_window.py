@@ -17,7 +17,7 @@ from waiting import wait_until  # noqa: E402
 STEPS = 10
 
 
-def opened(env, capsys):
+def wait_for_page(env, capsys):
     """The page of an environment that has just been reset."""
     return PageClient(re.search(r"environment: (\S+)", capsys.readouterr().out).group(1))
 
@@ -34,7 +34,7 @@ def seen_after_a_step(env, page):
 def test_who_looks_on_sees_the_episode_go_on_in_its_own_time(name, capsys):
     env = gymnasium.make(f"home_service_gym:{name}", render_mode="human")
     env.reset(seed=0)
-    with opened(env, capsys) as page:
+    with wait_for_page(env, capsys) as page:
         wait_until("a first picture", lambda: page.pictures > 0)
         before = page.pictures
         # A busy page shows several moments at once.
@@ -52,7 +52,7 @@ def test_who_looks_on_sees_the_episode_go_on_in_its_own_time(name, capsys):
 def test_another_world_takes_the_place_of_the_one_before(capsys):
     env = gymnasium.make("home_service_gym:PointGoal-v0", scenario="homes", render_mode="human")
     env.reset(seed=0, options={"seed": 1})
-    with opened(env, capsys) as page:
+    with wait_for_page(env, capsys) as page:
         page.wait_for_text("home of 264 m2")
         before = set(page.nodes)
         env.reset(options={"seed": 2})
@@ -62,7 +62,7 @@ def test_another_world_takes_the_place_of_the_one_before(capsys):
 
 
 def test_without_the_cockpit_a_sentence_says_what_is_missing(monkeypatch):
-    monkeypatch.delitem(sys.modules, "home_service_gym.window", raising=False)
+    monkeypatch.delitem(sys.modules, "home_service_gym.browser_window", raising=False)
     monkeypatch.setitem(sys.modules, "cockpit.page.server", None)
     env = gymnasium.make("home_service_gym:PointGoal-v0", render_mode="human")
     with pytest.raises(SettingsError, match="needs the cockpit: ./scripts/setup.sh --web"):

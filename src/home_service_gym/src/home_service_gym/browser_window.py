@@ -16,8 +16,8 @@ from cockpit.page.scene_renderer import SceneRenderer
 from cockpit.page.server import Page
 from cockpit.page.world_view import RobotView, WorldView
 from cockpit.scene.reader import describe_bodies, describe_robot, robot_joints
-from home_service_gym.playground import Moment, Playground, lidar_of
-from home_service_gym.task import Marks
+from home_service_gym.episode_simulation import EpisodeSimulation, EpisodeState, lidar_profile
+from home_service_gym.task import Overlay
 from planar import Pose2
 from sim_bridge import RobotProfile
 from sim_bridge.geometry.pose3 import pose3
@@ -30,7 +30,7 @@ SCAN, GOAL = (230, 57, 70), (60, 170, 80)
 CORNERS, ABOVE = 32, 0.01
 
 
-class Window:
+class BrowserWindow:
     """Serves the page from now on, and prints its URL; ``rate``: moments a second."""
 
     def __init__(self, robot: RobotProfile, rate: int):
@@ -44,16 +44,16 @@ class Window:
         for child, (parent, pose) in robot_joints(urdf).items():
             self._frames.put(child, Transform(parent, pose, 0.0, is_static=True))
         (self._base,) = self._frames.roots()
-        self._playground: Optional[Playground] = None
-        self._scan_height = float(lidar_of(robot).pose_in_base[2, 3])
+        self._simulation: Optional[EpisodeSimulation] = None
+        self._scan_height = float(lidar_profile(robot).pose_in_base[2, 3])
         self._period, self._due = 1.0 / rate, 0.0
 
-    def show(self, playground: Playground, moment: Moment, marks: Marks) -> None:
+    def show(self, simulation: EpisodeSimulation, state: EpisodeState, overlay: Overlay) -> None:
         """A control period later, if somebody looks on: as fast as it would be in the world."""
         with self._page.atomic():
-            if playground is not self._playground:
-                self._build(playground)
-            self._move(playground, moment, marks)
+            if simulation is not self._simulation:
+                self._build(simulation)
+            self._move(simulation, state, overlay)
         if self._page.is_watched:
             time.sleep(max(self._due - time.monotonic(), 0.0))
         self._due = time.monotonic() + self._period
@@ -61,33 +61,33 @@ class Window:
     def close(self) -> None:
         self._page.close()
 
-    def _build(self, playground: Playground) -> None:
+    def _build(self, simulation: EpisodeSimulation) -> None:
         for model in self._world.models:
             self._world.remove(model)
-        world = playground.arena.world
+        world = simulation.arena.world
         look = describe_bodies(replace(world, bodies=(*world.bodies, *map(body_of, world.walkers))))
         corners = np.vstack([piece.pose[:3, 3] for piece in look.parts])[:, :2]
         self._world.show(look)
         self._page.frame_view(corners.min(axis=0), corners.max(axis=0))
-        self._title.content = f"<b>{escape(playground.arena.title)}</b>"
-        self._playground = playground
+        self._title.content = f"<b>{escape(simulation.arena.title)}</b>"
+        self._simulation = simulation
 
-    def _move(self, playground: Playground, moment: Moment, marks: Marks) -> None:
-        base = moment.base_in_world
-        self._frames.put(self._base, Transform(WORLD, _lifted(base), moment.stamp, is_static=False))
-        poses = {body.name: body.pose_in_world for body in playground.arena.world.bodies}
-        for course in marks.trajectories:
-            height = poses[course.link][2, 3]
-            self._world.place(course.link, pose3(*course.at(moment.stamp), height, 0.0, 0.0, 0.0))
-        for walker, (x, y, *_) in zip(playground.arena.world.walkers, moment.people.tolist()):
+    def _move(self, simulation: EpisodeSimulation, state: EpisodeState, overlay: Overlay) -> None:
+        base = state.base_in_world
+        self._frames.put(self._base, Transform(WORLD, _lifted(base), state.stamp, is_static=False))
+        poses = {body.name: body.pose_in_world for body in simulation.arena.world.bodies}
+        for trajectory in overlay.trajectories:
+            height = poses[trajectory.link][2, 3]
+            self._world.place(trajectory.link, pose3(*trajectory.at(state.stamp), height, 0.0, 0.0, 0.0))
+        for walker, (x, y, *_) in zip(simulation.arena.world.walkers, state.people.tolist()):
             self._world.place(walker.link, pose3(x, y, walker.height / 2.0, 0.0, 0.0, 0.0))
         self._world.update(np.eye(4))
         self._robot.update(self._frames, WORLD, is_shown=True)
-        hits = base.transform_points(moment.scan.hit_points_in_base())
+        hits = base.transform_points(state.scan.hit_points_in_base())
         seen = np.column_stack([hits, np.full(len(hits), self._scan_height)])
         parts = [PlacedShape("scan", WORLD, PointCloudShape(seen, SCAN, 0.05))]
-        if marks.goal is not None:
-            parts.append(PlacedShape("goal", WORLD, _disc(*marks.goal)))
+        if overlay.goal is not None:
+            parts.append(PlacedShape("goal", WORLD, _disc(*overlay.goal)))
         self._drawer.show("episode", LayerUpdate(tuple(parts)))
         self._drawer.place(self._frames, WORLD, time.monotonic())
 

@@ -9,7 +9,7 @@ import numpy as np
 from home_service.headless import NAVIGATION_CONFIG, EpisodeConditions
 from home_service.judging.pedestrian_contacts import PedestrianContacts
 from home_service.judging.verdict import collision
-from laboratory.tasks.task import COLLISION, FAILURE, SUCCESS, TIMEOUT, Play
+from laboratory.tasks.task import COLLISION, FAILURE, SUCCESS, TIMEOUT, RunTrace
 from laboratory.worlds.barn import score
 from laboratory.worlds.source import Arena
 from move_base_lite import Navigator, Status
@@ -25,53 +25,55 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Reach:
+class OdomGoalTask:
     """``goal``: seen from the start; within ``radius``, metres, of it the robot has arrived."""
 
     goal: Pose2
     radius: float = 1.0
 
-    def play(self, scenario: "Scenario", arena: Arena, seed: int) -> Play:
-        drive = _Drive(scenario, arena, seed, self)
+    def run(self, scenario: "Scenario", arena: Arena, seed: int) -> RunTrace:
+        drive = _GoalDrive(scenario, arena, seed, self)
         try:
             outcome, reason = drive.run(scenario.seconds)
         finally:
             drive.close()
-        track, touched = np.array(drive.trajectory), sorted(drive.touched)
-        points = None
-        if arena.way is not None:
-            points = score(float(track[-1, 0]), arena.way) if outcome == SUCCESS else 0.0
-        return Play(
+        track, collisions = np.array(drive.trajectory), sorted(drive.collisions)
+        benchmark_score = None
+        if arena.reference_length is not None:
+            benchmark_score = (
+                score(float(track[-1, 0]), arena.reference_length) if outcome == SUCCESS else 0.0
+            )
+        return RunTrace(
             outcome,
             reason,
             track,
             np.zeros(0),
-            touched,
-            arena.way,
-            points,
+            collisions,
+            arena.reference_length,
+            benchmark_score,
             drive.pedestrians.track,
             drive.pedestrians.people_at_fault,
         )
 
-    def places(self, arena: Arena) -> Sequence[Pose2]:
+    def required_poses(self, arena: Arena) -> Sequence[Pose2]:
         return ()
 
-    def way(self, scenario: "Scenario", arena: Arena) -> Optional[float]:
-        return arena.way
+    def reference_length(self, scenario: "Scenario", arena: Arena) -> Optional[float]:
+        return arena.reference_length
 
     def files(self) -> Tuple[Path, ...]:
         return ()
 
-    def files_for_nodes(self, arena: Arena, seed: int, folder: Path) -> Mapping[str, Path]:
+    def launch_files(self, arena: Arena, seed: int, folder: Path) -> Mapping[str, Path]:
         raise SettingsError("the task reach is played in one process only, not over ROS")
 
 
-class _Drive:
+class _GoalDrive:
     """A run to a goal; it ends there, at the first touch, or when the navigator gives up."""
 
-    def __init__(self, scenario: "Scenario", arena: Arena, seed: int, task: Reach):
+    def __init__(self, scenario: "Scenario", arena: Arena, seed: int, task: OdomGoalTask):
         settings = EpisodeConditions(scenario.planner, scenario.parameters).navigation(
-            config_of(scenario.robot)
+            navigation_config(scenario.robot)
         )
         self._navigator = Navigator(settings)
         self._faults = FaultInjector(scenario.faults, seed)
@@ -87,15 +89,15 @@ class _Drive:
         self._steps = round(1.0 / settings.move_base.controller_frequency / self._simulation.step_seconds)
         self._task, self._goal = task, scenario.start @ task.goal
         self.trajectory: list = []
-        self.touched: Set[str] = set()
+        self.collisions: Set[str] = set()
 
     def run(self, seconds: float) -> Tuple[str, str]:
         """Outcome and reason; the clock starts with the goal."""
         observation = self._first_scan()
         scan = observation.scan
-        began = observation.stamp
+        start_stamp = observation.stamp
         self._navigator.set_goal(self._task.goal)
-        while observation.stamp - began < seconds:
+        while observation.stamp - start_stamp < seconds:
             base_in_odom = observation.odometry.base_in_odom
             decision = self._navigator.tick(
                 observation.stamp, base_in_odom, base_in_odom, observation.odometry.twist, scan
@@ -103,11 +105,11 @@ class _Drive:
             if decision.status.is_final and decision.status is not Status.SUCCEEDED:
                 return FAILURE, decision.text
             observation, scan = self._advance(decision.command)
-            self._note(observation, began)
-            touched = collision(sorted(self.touched))
-            if touched:
+            self._record(observation, start_stamp)
+            collisions = collision(sorted(self.collisions))
+            if collisions:
                 place = observation.base_in_world
-                return COLLISION, f"{touched} at {place.x:.2f}, {place.y:.2f}"
+                return COLLISION, f"{collisions} at {place.x:.2f}, {place.y:.2f}"
             if observation.base_in_world.distance_to(self._goal) <= self._task.radius:
                 return SUCCESS, "reached the goal"
         return TIMEOUT, f"not done within {seconds:g} simulated seconds"
@@ -119,7 +121,7 @@ class _Drive:
         while True:
             observation = self._simulation.step()
             if observation.scan is not None:
-                self._note(observation, observation.stamp)
+                self._record(observation, observation.stamp)
                 return observation
 
     def _advance(self, command: Optional[Twist2]) -> Tuple[StepResult, Optional[Scan]]:
@@ -128,28 +130,28 @@ class _Drive:
         for _ in range(self._steps):
             observation = self._simulation.step(command)
             command, scan = None, observation.scan or scan
-            self.touched.update(self.pedestrians.robot_collisions(observation))
+            self.collisions.update(self.pedestrians.robot_collisions(observation))
             place = FaultContext(self._simulation.scene, ROBOT_NAME, observation.base_in_world)
             self._faults.update(observation.stamp, place)
         return observation, scan
 
-    def _note(self, observation: StepResult, began: float) -> None:
+    def _record(self, observation: StepResult, start_stamp: float) -> None:
         truth = observation.base_in_world
-        self.trajectory.append((observation.stamp - began, truth.x, truth.y, truth.yaw))
+        self.trajectory.append((observation.stamp - start_stamp, truth.x, truth.y, truth.yaw))
         self.pedestrians.record()
 
 
-def config_of(robot: str) -> Path:
+def navigation_config(robot: str) -> Path:
     """move_base's parameters for a robot: the file of its name, or the TurtleBot's."""
     config = NAVIGATION_CONFIG.with_name(f"{robot}.yaml")
     return config if config.exists() else NAVIGATION_CONFIG
 
 
-def read_reach(table: Table, folder: Path) -> Reach:
+def read_reach(table: Table, folder: Path) -> OdomGoalTask:
     """``reach``: x, y and radius, seen from the start."""
     table.allow_only("reach")
     goal = table.table("reach")
     goal.allow_only("x", "y", "yaw", "radius")
-    radius = goal.number("radius", Reach.radius)
+    radius = goal.number("radius", OdomGoalTask.radius)
     goal.check(radius > 0.0, "radius", "positive")
-    return Reach(parse_pose(goal), radius)
+    return OdomGoalTask(parse_pose(goal), radius)

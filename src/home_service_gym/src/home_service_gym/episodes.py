@@ -15,10 +15,10 @@ from planar.plugins import load_object
 
 Policy = Callable[[Any], Any]
 # Control periods between two pictures of an animation.
-PERIODS = 3
+FRAME_PERIODS = 3
 
 
-def environment_of(name: str, arguments: str) -> gymnasium.Env[Any, Any]:
+def make_environment(name: str, arguments: str) -> gymnasium.Env[Any, Any]:
     """``arguments``: of its constructor, as a YAML mapping. Raises SettingsError."""
     if name not in NAMES:
         raise SettingsError(
@@ -33,7 +33,7 @@ def environment_of(name: str, arguments: str) -> gymnasium.Env[Any, Any]:
         raise SettingsError(f"{name}: {error}") from None
 
 
-def policy_of(name: str, env: gymnasium.Env[Any, Any], seed: int) -> Policy:
+def load_policy(name: str, env: gymnasium.Env[Any, Any], seed: int) -> Policy:
     """That of a dotted name, or one that acts by chance. Raises SettingsError."""
     if name:
         return load_object(name)
@@ -41,20 +41,20 @@ def policy_of(name: str, env: gymnasium.Env[Any, Any], seed: int) -> Policy:
     return lambda observation: env.action_space.sample()
 
 
-class Episodes:
+class EpisodeRunner:
     """Of one environment with one policy; ``is_filmed``: for an animation."""
 
-    def __init__(self, env: gymnasium.Env[Any, Any], policy: Policy, is_filmed: bool):
-        self._env, self._policy, self._is_filmed = env, policy, is_filmed
-        self._film: List[np.ndarray] = []
+    def __init__(self, env: gymnasium.Env[Any, Any], policy: Policy, is_recording: bool):
+        self._env, self._policy, self._is_recording = env, policy, is_recording
+        self._frames: List[np.ndarray] = []
 
-    def play(self, seed: int) -> str:
+    def run(self, seed: int) -> str:
         """One episode; how it went."""
         observation, _ = self._env.reset(seed=seed)
         total, periods, is_over = 0.0, 0, False
         while not is_over:
-            if self._is_filmed and periods % PERIODS == 0:
-                self._film.append(np.asarray(self._env.render()))
+            if self._is_recording and periods % FRAME_PERIODS == 0:
+                self._frames.append(np.asarray(self._env.render()))
             observation, reward, terminated, truncated, info = self._env.step(self._policy(observation))
             total, periods = total + float(reward), periods + 1
             is_over = terminated or truncated
@@ -62,8 +62,8 @@ class Episodes:
 
     def save(self, path: Path) -> None:
         """The animation. Raises SettingsError if it cannot be written."""
-        first, *others = [Image.fromarray(picture) for picture in self._film]
+        first, *others = [Image.fromarray(picture) for picture in self._frames]
         try:
-            first.save(path, save_all=True, append_images=others, duration=100 * PERIODS, loop=0)
+            first.save(path, save_all=True, append_images=others, duration=100 * FRAME_PERIODS, loop=0)
         except (OSError, ValueError) as error:
             raise SettingsError(f"{path}: cannot be written: {error}") from None

@@ -4,14 +4,13 @@ from pathlib import Path
 from typing import Any, Callable, Dict, Mapping, Tuple, TypeVar
 
 from home_service.headless import EpisodeConditions
+from laboratory.scenario.registry import TASKS, WORLD_SOURCES
 from laboratory.scenario.scenario import OFFICIAL, Scenario
-from laboratory.scenario.seeds import seeds_of
-from laboratory.tasks.reach import config_of
-from laboratory.tasks.registry import TASKS
+from laboratory.scenario.seeds import parse_seeds
+from laboratory.tasks.odom_goal import navigation_config
+from laboratory.worlds.custom import read_custom_worlds
 from laboratory.worlds.doors import read_doors
-from laboratory.worlds.own import read_own_worlds
-from laboratory.worlds.people import People, read_people
-from laboratory.worlds.registry import SOURCES
+from laboratory.worlds.people import Pedestrians, read_people
 from laboratory.worlds.source import WorldSource
 from move_base_lite import settings_from_parameters
 from move_base_lite.control import check_local_planner
@@ -32,26 +31,26 @@ def read_scenario(path: Path) -> Scenario:
     """The scenario of a file. Raises SettingsError."""
     table = read_table(path)
     table.allow_only(*KEYS)
-    robot, start = _robot(_part(table, "robot", "profile", "start"))
+    robot, start = _read_robot(_part(table, "robot", "profile", "start"))
     happens = _part(table, "happens", "boxes", "doors", "people", "faults")
     planner = _part(table, "planner", "name", "parameters")
     return Scenario(
         name=path.stem,
         file=path.resolve(),
         about=table.text("about") if "about" in table else "",
-        world=_world(table, path.parent),
-        task=_chosen(table, "task", TASKS, path.parent),
+        world=_read_world(table, path.parent),
+        task=_read_kind(table, "task", TASKS, path.parent),
         robot=robot,
         start=start,
-        simulation=_simulation(table),
-        **_boxes(happens),
+        simulation=_read_simulation(table),
+        **_read_boxes(happens),
         doors=read_doors(happens) if happens else 0,
-        people=read_people(happens) if happens else People(),
+        people=read_people(happens) if happens else Pedestrians(),
         faults=faults_from(happens) if happens else (),
-        planner=_planner(planner) if planner and "name" in planner else "",
-        parameters=_parameters(planner, robot) if planner else {},
-        seconds=_seconds(_part(table, "limits", "seconds")),
-        seeds=_seeds(table),
+        planner=_read_planner(planner) if planner and "name" in planner else "",
+        parameters=_read_parameters(planner, robot) if planner else {},
+        seconds=_read_seconds(_part(table, "limits", "seconds")),
+        seeds=_read_seeds(table),
     )
 
 
@@ -64,14 +63,20 @@ def _part(table: Table, key: str, *known: str) -> Any:
     return part
 
 
-def _world(table: Table, folder: Path) -> WorldSource:
+def _read_world(table: Table, folder: Path) -> WorldSource:
     """One of ours, or the generator that a dotted name names."""
     part = table.table("world")
-    own = next((key for key in part if "/" in key), None)
-    return _chosen(table, "world", SOURCES, folder) if own is None else read_own_worlds(part, own)
+    custom = next((key for key in part if "/" in key), None)
+    return (
+        _read_kind(table, "world", WORLD_SOURCES, folder)
+        if custom is None
+        else read_custom_worlds(part, custom)
+    )
 
 
-def _chosen(table: Table, key: str, kinds: Mapping[str, Callable[[Table, Path], Kind]], folder: Path) -> Kind:
+def _read_kind(
+    table: Table, key: str, kinds: Mapping[str, Callable[[Table, Path], Kind]], folder: Path
+) -> Kind:
     """What the table of a key describes: one key of ``kinds`` says of which kind it is."""
     part = table.table(key)
     found = [known for known in part if known in kinds]
@@ -81,7 +86,7 @@ def _chosen(table: Table, key: str, kinds: Mapping[str, Callable[[Table, Path], 
     return kinds[found[0]](part, folder)
 
 
-def _boxes(happens: Any) -> Dict[str, Any]:
+def _read_boxes(happens: Any) -> Dict[str, Any]:
     """How many, or where each is."""
     if happens is None or "boxes" not in happens:
         return {}
@@ -93,7 +98,7 @@ def _boxes(happens: Any) -> Dict[str, Any]:
     return {"boxes_at": tuple(map(parse_pose, places))}
 
 
-def _robot(table: Any) -> Tuple[str, Pose2]:
+def _read_robot(table: Any) -> Tuple[str, Pose2]:
     if table is None:
         return Scenario.robot, Scenario.start
     name = table.text("profile", Scenario.robot)
@@ -109,7 +114,7 @@ def _robot(table: Any) -> Tuple[str, Pose2]:
     return name, start
 
 
-def _simulation(table: Table) -> SimulationSettings:
+def _read_simulation(table: Table) -> SimulationSettings:
     """A profile ``noise``, and single values over it."""
     if "simulation" not in table:
         return SimulationSettings()
@@ -125,7 +130,7 @@ def _simulation(table: Table) -> SimulationSettings:
     return settings
 
 
-def _planner(planner: Table) -> str:
+def _read_planner(planner: Table) -> str:
     name = planner.text("name")
     try:
         if name != OFFICIAL:
@@ -135,14 +140,14 @@ def _planner(planner: Table) -> str:
     return name
 
 
-def _parameters(planner: Table, robot: str) -> Mapping[str, Any]:
+def _read_parameters(planner: Table, robot: str) -> Mapping[str, Any]:
     """Of move_base, by their official names; one that it does not know is an error."""
     if "parameters" not in planner:
         return {}
     values = planner.table("parameters").values()
     name = planner.text("name") if "name" in planner else ""
     try:
-        EpisodeConditions(name, values).navigation(config_of(robot))
+        EpisodeConditions(name, values).navigation(navigation_config(robot))
         _, warnings = settings_from_parameters({**values, **({"base_local_planner": name} if name else {})})
     except SettingsError as error:
         raise planner.complaint("parameters", f"cannot be used: {error}") from None
@@ -151,7 +156,7 @@ def _parameters(planner: Table, robot: str) -> Mapping[str, Any]:
     return values
 
 
-def _seconds(limits: Any) -> float:
+def _read_seconds(limits: Any) -> float:
     if limits is None:
         return Scenario.seconds
     seconds = limits.number("seconds")
@@ -159,10 +164,10 @@ def _seconds(limits: Any) -> float:
     return seconds
 
 
-def _seeds(table: Table) -> Tuple[int, ...]:
+def _read_seeds(table: Table) -> Tuple[int, ...]:
     if "seeds" not in table:
         return Scenario.seeds
     try:
-        return seeds_of(table.text("seeds"))
+        return parse_seeds(table.text("seeds"))
     except SettingsError as error:
         raise table.complaint("seeds", f"cannot be used: {error}") from None

@@ -18,7 +18,7 @@ STILL_V, STILL_OMEGA = 0.001, 0.01
 
 
 @dataclass(frozen=True)
-class Manners:
+class SocialMetrics:
     """Shares of the time that the nearest person was in the ``intimate``, ``personal``, ``social`` space.
 
     ``person_nearest``, ``person_distance``: the least and the mean distance to the nearest, metres.
@@ -33,10 +33,10 @@ class Manners:
     social_work: Optional[float] = None
 
 
-def manners(track: np.ndarray, people: np.ndarray) -> Manners:
+def social_metrics(track: np.ndarray, people: np.ndarray) -> SocialMetrics:
     """Of a track (T, 4) of stamp, x, y, yaw, and people (T, N, 5) as in sim_bridge.people."""
     if len(track) < 2 or people.ndim != 3 or not people.shape[1]:
-        return Manners()
+        return SocialMetrics()
     off = people[:, :, :2] - track[:, None, 1:3]
     nearest = np.hypot(off[..., 0], off[..., 1]).min(axis=1)
     spaces = np.searchsorted((INTIMATE, PERSONAL, SOCIAL), nearest, side="right")
@@ -45,7 +45,7 @@ def manners(track: np.ndarray, people: np.ndarray) -> Manners:
     robots = np.column_stack((track[:, 1:3], velocities, np.full(len(track), ROBOT_RADIUS)))
     work = sum(dt * social_work(robot, each) for dt, robot, each in zip(seconds, robots, people))
     intimate, personal, social = (float((spaces == space).mean()) for space in range(3))
-    return Manners(intimate, personal, social, float(nearest.min()), float(nearest.mean()), float(work))
+    return SocialMetrics(intimate, personal, social, float(nearest.min()), float(nearest.mean()), float(work))
 
 
 def seconds_still(track: np.ndarray) -> float:

@@ -11,7 +11,7 @@ from planar import FREE, OCCUPIED, OccupancyGrid, Pose2
 
 # Cells along a side, and metres of a cell.
 SIDE, CELL = 64, 0.15
-NOTHING, OPEN, SOLID = 0, 128, 255
+UNKNOWN, FREE_SHADE, OCCUPIED_SHADE = 0, 128, 255
 
 
 def map_space() -> spaces.Space[Any]:
@@ -19,22 +19,22 @@ def map_space() -> spaces.Space[Any]:
     return spaces.Box(0, 255, (SIDE, SIDE), np.uint8)
 
 
-class MapAround:
+class EgocentricMap:
     """A grid as a picture, seen from above with the robot in the middle, looking to the right."""
 
     def __init__(self, grid: OccupancyGrid):
         self._map_in_grid, self._resolution = grid.origin.inverse(), grid.resolution
-        self._shades = np.full(grid.cells.shape, NOTHING, dtype=np.uint8)
-        self._shades[grid.cells == FREE] = OPEN
-        self._shades[grid.cells == OCCUPIED] = SOLID
+        self._shades = np.full(grid.cells.shape, UNKNOWN, dtype=np.uint8)
+        self._shades[grid.cells == FREE] = FREE_SHADE
+        self._shades[grid.cells == OCCUPIED] = OCCUPIED_SHADE
         self._all = np.ones(grid.cells.shape, dtype=np.bool_)
 
-    def seen_from(self, base: Pose2, known: Optional[np.ndarray] = None) -> np.ndarray:
+    def view_from(self, base: Pose2, explored: Optional[np.ndarray] = None) -> np.ndarray:
         """(SIDE, SIDE), uint8. ``known``: which cells, bool (rows, cols), are shown; None: all."""
         place = self._map_in_grid @ base
         return _draw(
             self._shades,
-            self._all if known is None else known,
+            self._all if explored is None else explored,
             place.x / self._resolution,
             place.y / self._resolution,
             place.yaw,
@@ -43,10 +43,10 @@ class MapAround:
 
 
 @numba.njit(cache=True)
-def _draw(shades, known, x, y, yaw, step):
+def _draw(shades, explored, x, y, yaw, step):
     """``x``, ``y``: of the robot, and ``step``, between the picture's cells, all in cells of the grid."""
     rows, cols = shades.shape
-    picture = np.full((SIDE, SIDE), NOTHING, dtype=np.uint8)
+    picture = np.full((SIDE, SIDE), UNKNOWN, dtype=np.uint8)
     ahead_x, ahead_y = math.cos(yaw) * step, math.sin(yaw) * step
     middle = (SIDE - 1) / 2.0
     for down in range(SIDE):
@@ -56,5 +56,5 @@ def _draw(shades, known, x, y, yaw, step):
             row = math.floor(y + ahead * ahead_y + left * ahead_x)
             col = math.floor(x + ahead * ahead_x - left * ahead_y)
             if 0 <= row < rows and 0 <= col < cols:
-                picture[down, right] = shades[row, col] * known[row, col]
+                picture[down, right] = shades[row, col] * explored[row, col]
     return picture

@@ -6,9 +6,9 @@ import gymnasium
 import numpy as np
 import pytest
 
-from home_service_gym.maps.around import NOTHING, OPEN, SIDE, SOLID, MapAround
-from home_service_gym.playground import crowd_of
-from home_service_gym.surroundings import NOBODY, nearest_people
+from home_service_gym.episode_simulation import moving_discs
+from home_service_gym.maps.egocentric_map import FREE_SHADE, OCCUPIED_SHADE, SIDE, UNKNOWN, EgocentricMap
+from home_service_gym.people_and_map import NOBODY, nearest_people
 from planar import Pose2, SettingsError, grid_from_picture
 
 
@@ -28,10 +28,10 @@ def test_the_map_around_is_turned_with_the_robot():
     corner = grid.points_of(np.array([[2, 0]]))[0]
     for yaw in (0.0, math.pi / 2.0):
         ahead = Pose2(*corner.tolist(), yaw) @ Pose2(-1.0, 0.0, 0.0)
-        picture = MapAround(grid).seen_from(ahead)
-        row, col = np.argwhere(picture == SOLID).mean(axis=0)
+        picture = EgocentricMap(grid).view_from(ahead)
+        row, col = np.argwhere(picture == OCCUPIED_SHADE).mean(axis=0)
         assert row == pytest.approx(SIDE / 2, abs=1.0) and col > SIDE / 2
-    assert {NOTHING, OPEN, SOLID} == set(np.unique(picture).tolist())
+    assert {UNKNOWN, FREE_SHADE, OCCUPIED_SHADE} == set(np.unique(picture).tolist())
 
 
 def test_people_are_told_as_they_walk_and_others_for_each_seed():
@@ -63,11 +63,11 @@ def test_no_episode_begins_where_somebody_stands():
 def test_what_moves_is_known_by_where_it_begins():
     fields = gymnasium.make("home_service_gym:DynaBARN-v0").unwrapped
     fields.reset(seed=1, options={"seed": 1})
-    world = fields._playground.arena.world
-    crowd = crowd_of(world)
+    world = fields._simulation.arena.world
+    crowd = moving_discs(world)
     assert len(crowd) == len(world.trajectories) > 0
-    for disc, course in zip(crowd.tolist(), world.trajectories):
-        assert disc[:2] == pytest.approx(course.at(0.0)) and 0.1 < disc[2] < 2.0
+    for disc, trajectory in zip(crowd.tolist(), world.trajectories):
+        assert disc[:2] == pytest.approx(trajectory.at(0.0)) and 0.1 < disc[2] < 2.0
     fields.close()
 
 

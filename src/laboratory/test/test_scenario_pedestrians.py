@@ -6,13 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from laboratory.playing import play
-from laboratory.results.people import manners, seconds_still
-from laboratory.results.result import Result
-from laboratory.results.store import COLUMNS, Store
+from laboratory.results.result import RunResult
+from laboratory.results.social_metrics import seconds_still, social_metrics
+from laboratory.results.store import COLUMNS, ResultStore
+from laboratory.runner import run_scenario
 from laboratory.scenario import read_scenario
 from laboratory.suites import FOLDER
-from laboratory.worlds.people import APART, TO_START, People
+from laboratory.worlds.people import APART, START_CLEARANCE, Pedestrians
 from planar import SettingsError
 
 SCENARIO = FOLDER / "home_people.yaml"
@@ -33,7 +33,7 @@ def test_as_many_are_there_as_asked_for_and_others_for_each_seed():
     assert [walker.goals_xy.tolist() for walker in again] == [w.goals_xy.tolist() for w in crowds[5]]
     firsts = np.array([[walker.goals_xy[0] for walker in walkers] for walkers in crowds])
     assert len(np.unique(firsts.reshape(-1, 2), axis=0)) > 40
-    assert np.hypot(*firsts.reshape(-1, 2).T).min() > TO_START
+    assert np.hypot(*firsts.reshape(-1, 2).T).min() > START_CLEARANCE
     for starts in firsts:
         gaps = [np.hypot(*(a - b)) for n, a in enumerate(starts) for b in starts[:n]]
         assert min(gaps) > APART
@@ -44,7 +44,7 @@ def test_as_many_are_there_as_asked_for_and_others_for_each_seed():
 def test_they_can_be_told_apart(tmp_path):
     people = "{adults: 1, children: 2, standing: 1, groups: [3]}"
     scenario = read_scenario(written(tmp_path, people))
-    assert scenario.people == People(adults=1, children=2, standing=1, groups=(3,))
+    assert scenario.people == Pedestrians(adults=1, children=2, standing=1, groups=(3,))
     walkers = scenario.arena(0).world.walkers
     assert [walker.group > 0 for walker in walkers] == [False] * 3 + [True] * 3 + [False]
     assert [walker.height for walker in walkers] == [1.7, 1.1, 1.1, 1.7, 1.7, 1.7, 1.7]
@@ -79,16 +79,16 @@ def test_a_mistake_is_told_with_line_and_key(tmp_path, people, complaint):
 
 
 def test_too_many_for_a_small_place_are_an_error():
-    scenario = replace(read_scenario(SCENARIO), people=People(adults=400))
-    result = play(scenario, 0)
+    scenario = replace(read_scenario(SCENARIO), people=Pedestrians(adults=400))
+    result = run_scenario(scenario, 0)
     assert result.outcome == "error" and "no room for so many people" in result.reason
 
 
 def test_a_run_among_people_is_played_alike_and_measured():
     scenario = read_scenario(SCENARIO)
-    first, again = play(scenario, 3), play(scenario, 3)
+    first, again = run_scenario(scenario, 3), run_scenario(scenario, 3)
     assert replace(first, wall_seconds=0.0) == replace(again, wall_seconds=0.0)
-    assert first.hash != play(replace(scenario, people=People()), 3).hash
+    assert first.hash != run_scenario(replace(scenario, people=Pedestrians()), 3).hash
     assert first.is_success, first.reason
     shares = (first.intimate, first.personal, first.social)
     assert all(share is not None and 0.0 <= share <= 1.0 for share in shares) and sum(shares) <= 1.0
@@ -101,11 +101,11 @@ def test_spaces_are_told_by_the_nearest_person():
     track = np.column_stack((np.arange(5) * 0.1, np.zeros((5, 3))))
     people = np.zeros((5, 2, 5))
     people[:, 0, 0], people[:, 1, 0] = (0.4, 0.45, 1.0, 1.2, 4.0), 9.0
-    found = manners(track, people)
+    found = social_metrics(track, people)
     assert (found.intimate, found.personal, found.social) == (0.2, 0.4, 0.2)
     assert found.person_nearest == pytest.approx(0.4)
     assert found.person_distance == pytest.approx(7.05 / 5)
-    assert manners(track, np.empty((5, 0, 5))).intimate is None
+    assert social_metrics(track, np.empty((5, 0, 5))).intimate is None
 
 
 def test_social_work_is_the_less_the_farther_off_people_are():
@@ -113,7 +113,7 @@ def test_social_work_is_the_less_the_farther_off_people_are():
     works = []
     for distance in (0.6, 1.2, 3.0):
         people = np.tile((distance, 0.0, 0.0, 0.0, 0.2), (5, 1, 1))
-        works.append(manners(track, people).social_work)
+        works.append(social_metrics(track, people).social_work)
     assert works[0] > 2.0 * works[1] > 20.0 * works[2] > 0.0
 
 
@@ -132,7 +132,7 @@ def test_a_file_of_results_from_before_there_were_people_is_gone_on_with(tmp_pat
             f"CREATE TABLE results ({', '.join(columns)}, PRIMARY KEY (digest, seed, version))"
         )
         connection.execute("INSERT INTO results (digest, seed, version) VALUES ('d', 1, 'v')")
-    store = Store(path)
-    store.add(Result("d", 2, "v", "success", "fine", social_work=1.5))
+    store = ResultStore(path)
+    store.add(RunResult("d", 2, "v", "success", "fine", social_work=1.5))
     assert [run.social_work for run in store.results("d", "v")] == [None, 1.5]
     store.close()

@@ -8,13 +8,13 @@ import numpy as np
 
 # Metres: of the least room, of a door, of the wall that stays on either side of it; square metres: of a room
 # that is never, and of one that is always cut.
-SMALLEST_SIDE, DOOR, BESIDE_DOOR = 2.4, 1.1, 0.5
-SMALL_ROOM, LARGE_ROOM = 12.0, 30.0
+SMALLEST_SIDE, DOOR_WIDTH, DOOR_MARGIN = 2.4, 1.1, 0.5
+MIN_SPLIT_AREA, MAX_ROOM_AREA = 12.0, 30.0
 THICKNESS = 0.12
 
 
 @dataclass(frozen=True)
-class Room:
+class Rectangle:
     """From x, y to x + width, y + depth; metres. Walls and furniture are told so too."""
 
     x: float
@@ -42,7 +42,7 @@ class Room:
 
 
 @dataclass(frozen=True)
-class Wall:
+class WallSegment:
     """A straight piece from one end to the other."""
 
     x1: float
@@ -55,10 +55,10 @@ class Wall:
         return abs(self.x2 - self.x1) + abs(self.y2 - self.y1)
 
     @property
-    def solid(self) -> Room:
+    def solid(self) -> Rectangle:
         """What it takes up."""
         half = THICKNESS / 2.0
-        return Room(
+        return Rectangle(
             self.x1 - half, self.y1 - half, self.x2 - self.x1 + THICKNESS, self.y2 - self.y1 + THICKNESS
         )
 
@@ -66,81 +66,90 @@ class Wall:
 class FloorPlan(NamedTuple):
     """``walls``: those outside among them; ``doorways``: what walls leave open."""
 
-    rooms: List[Room]
-    walls: List[Wall]
-    doorways: List[Wall]
+    rooms: List[Rectangle]
+    walls: List[WallSegment]
+    doorways: List[WallSegment]
 
     @property
-    def solids(self) -> List[Room]:
+    def solids(self) -> List[Rectangle]:
         """What its walls take up."""
         return [wall.solid for wall in self.walls]
 
-    def add_with_door(self, wall: Wall, rng: np.random.Generator) -> None:
+    def add_with_door(self, wall: WallSegment, rng: np.random.Generator) -> None:
         """A wall with a door somewhere in it."""
         doorway, *pieces = _with_door(wall, rng)
         self.doorways.append(doorway)
         self.walls.extend(pieces)
 
 
-def walls_round(room: Room) -> List[Wall]:
+def outer_walls(room: Rectangle) -> List[WallSegment]:
     """Its four sides."""
     x, y, right, top = room.corners
-    return [Wall(x, y, right, y), Wall(x, top, right, top), Wall(x, y, x, top), Wall(right, y, right, top)]
+    return [
+        WallSegment(x, y, right, y),
+        WallSegment(x, top, right, top),
+        WallSegment(x, y, x, top),
+        WallSegment(right, y, right, top),
+    ]
 
 
-def floor_plan(outline: Room, rng: np.random.Generator) -> FloorPlan:
+def generate_floor_plan(outline: Rectangle, rng: np.random.Generator) -> FloorPlan:
     """A rectangle cut again and again."""
-    floor = FloorPlan([], walls_round(outline), [])
-    waiting = [outline]
-    while waiting:
-        room = waiting.pop()
-        cut = _cut(room, rng) if _is_cut(room, rng) else None
-        if cut is None or any(_ends_in(cut[2], door) for door in floor.doorways):
+    floor = FloorPlan([], outer_walls(outline), [])
+    pending = [outline]
+    while pending:
+        room = pending.pop()
+        split = _split(room, rng) if _is_split(room, rng) else None
+        if split is None or any(_blocks(split[2], door) for door in floor.doorways):
             floor.rooms.append(room)
             continue
-        waiting += cut[:2]
-        floor.add_with_door(cut[2], rng)
+        pending += split[:2]
+        floor.add_with_door(split[2], rng)
     return floor
 
 
-def _ends_in(wall: Wall, door: Wall) -> bool:
+def _blocks(wall: WallSegment, door: WallSegment) -> bool:
     """Whether a wall would end in a door, or too near to it."""
     return any(
-        door.x1 - BESIDE_DOOR <= x <= door.x2 + BESIDE_DOOR
-        and door.y1 - BESIDE_DOOR <= y <= door.y2 + BESIDE_DOOR
+        door.x1 - DOOR_MARGIN <= x <= door.x2 + DOOR_MARGIN
+        and door.y1 - DOOR_MARGIN <= y <= door.y2 + DOOR_MARGIN
         for x, y in ((wall.x1, wall.y1), (wall.x2, wall.y2))
     )
 
 
-def _is_cut(room: Room, rng: np.random.Generator) -> bool:
+def _is_split(room: Rectangle, rng: np.random.Generator) -> bool:
     if max(room.width, room.depth) < 2 * SMALLEST_SIDE:
         return False
-    share = (room.area - SMALL_ROOM) / (LARGE_ROOM - SMALL_ROOM)
+    share = (room.area - MIN_SPLIT_AREA) / (MAX_ROOM_AREA - MIN_SPLIT_AREA)
     return bool(rng.random() < share)
 
 
-def _cut(room: Room, rng: np.random.Generator) -> Tuple[Room, Room, Wall]:
+def _split(room: Rectangle, rng: np.random.Generator) -> Tuple[Rectangle, Rectangle, WallSegment]:
     """Across its longer side."""
     longer = max(room.width, room.depth)
     at = rng.uniform(max(SMALLEST_SIDE, 0.35 * longer), min(longer - SMALLEST_SIDE, 0.65 * longer))
     if room.width >= room.depth:
         x = room.x + at
         return (
-            Room(room.x, room.y, at, room.depth),
-            Room(x, room.y, room.width - at, room.depth),
-            Wall(x, room.y, x, room.y + room.depth),
+            Rectangle(room.x, room.y, at, room.depth),
+            Rectangle(x, room.y, room.width - at, room.depth),
+            WallSegment(x, room.y, x, room.y + room.depth),
         )
     y = room.y + at
     return (
-        Room(room.x, room.y, room.width, at),
-        Room(room.x, y, room.width, room.depth - at),
-        Wall(room.x, y, room.x + room.width, y),
+        Rectangle(room.x, room.y, room.width, at),
+        Rectangle(room.x, y, room.width, room.depth - at),
+        WallSegment(room.x, y, room.x + room.width, y),
     )
 
 
-def _with_door(wall: Wall, rng: np.random.Generator) -> List[Wall]:
+def _with_door(wall: WallSegment, rng: np.random.Generator) -> List[WallSegment]:
     """A door, and the two pieces beside it."""
-    start = rng.uniform(BESIDE_DOOR, wall.length - BESIDE_DOOR - DOOR)
+    start = rng.uniform(DOOR_MARGIN, wall.length - DOOR_MARGIN - DOOR_WIDTH)
     along = np.array([wall.x2 - wall.x1, wall.y2 - wall.y1]) / wall.length
-    (x1, y1), (x2, y2) = ((wall.x1, wall.y1) + along * at for at in (start, start + DOOR))
-    return [Wall(x1, y1, x2, y2), Wall(wall.x1, wall.y1, x1, y1), Wall(x2, y2, wall.x2, wall.y2)]
+    (x1, y1), (x2, y2) = ((wall.x1, wall.y1) + along * at for at in (start, start + DOOR_WIDTH))
+    return [
+        WallSegment(x1, y1, x2, y2),
+        WallSegment(wall.x1, wall.y1, x1, y1),
+        WallSegment(x2, y2, wall.x2, wall.y2),
+    ]

@@ -13,13 +13,13 @@ from planar import FREE, OccupancyGrid, Pose2
 from planar.geometry.distance_field import distance_field
 
 # Metres from a robot's middle to what is solid: where it is put, and on its ways.
-ROOM_TO_STAND, ROOM_TO_PASS = 0.4, 0.35
-STATIONS = 16
-KEPT_GOALS = 4
+STANDING_CLEARANCE, PASSAGE_CLEARANCE = 0.4, 0.35
+WAYPOINT_COUNT = 16
+MAX_KEPT_GOALS = 4
 NOBODY = np.empty((0, 3))
 
 
-class Ground:
+class TraversableSpace:
     """``grid``: free is what can be reached from ``start``; ``crowd`` (N, 3): x, y and radius of what moves.
 
     Nobody is put where something that moves begins.
@@ -28,58 +28,60 @@ class Ground:
     def __init__(self, grid: OccupancyGrid, start: Pose2, crowd: np.ndarray = NOBODY):
         self.grid = grid
         self._map_in_grid = grid.origin.inverse()
-        self._room = distance_field(grid.cells != FREE, grid.resolution)
-        from_start = travel_distances(grid, self._room, start, ROOM_TO_PASS)
-        self._to_goals: OrderedDict[Pose2, np.ndarray] = OrderedDict()
-        self._to_stations: Dict[int, np.ndarray] = {}
-        self._ways: Dict[Tuple[int, int], np.ndarray] = {}
-        standing = np.argwhere((self._room > ROOM_TO_STAND) & np.isfinite(from_start))
-        gaps = cdist(grid.points_of(standing), crowd[:, :2]) - crowd[:, 2]
-        self._standing = standing[(gaps > ROOM_TO_STAND).all(axis=1)]
+        self._clearance = distance_field(grid.cells != FREE, grid.resolution)
+        from_start = travel_distances(grid, self._clearance, start, PASSAGE_CLEARANCE)
+        self._goal_distances: OrderedDict[Pose2, np.ndarray] = OrderedDict()
+        self._waypoint_distances: Dict[int, np.ndarray] = {}
+        self._paths: Dict[Tuple[int, int], np.ndarray] = {}
+        standing_cells = np.argwhere((self._clearance > STANDING_CLEARANCE) & np.isfinite(from_start))
+        gaps = cdist(grid.points_of(standing_cells), crowd[:, :2]) - crowd[:, 2]
+        self._standing_cells = standing_cells[(gaps > STANDING_CLEARANCE).all(axis=1)]
 
-    def place(
+    def sample_pose(
         self, rng: np.random.Generator, distances: Optional[np.ndarray] = None, least: float = 0.0
     ) -> Pose2:
         """Anywhere with room, turned anyhow; of ``distances`` to a goal (see ``distances_to``) at least one.
 
         If nowhere is that far from the goal, the place that comes nearest to it.
         """
-        cells = self._standing
+        cells = self._standing_cells
         if distances is not None:
-            ways = distances[cells[:, 0], cells[:, 1]]
-            far = np.isfinite(ways) & (ways >= least)
+            path_lengths = distances[cells[:, 0], cells[:, 1]]
+            far = np.isfinite(path_lengths) & (path_lengths >= least)
             cells = (
-                cells[far] if far.any() else cells[[int(np.argmax(np.where(np.isfinite(ways), ways, -1.0)))]]
+                cells[far]
+                if far.any()
+                else cells[[int(np.argmax(np.where(np.isfinite(path_lengths), path_lengths, -1.0)))]]
             )
         x, y = self.grid.points_of(cells[[rng.integers(len(cells))]])[0].tolist()
         return Pose2(x, y, float(rng.uniform(-math.pi, math.pi)))
 
     @cached_property
-    def stations(self) -> Tuple[Pose2, ...]:
+    def waypoints(self) -> Tuple[Pose2, ...]:
         """Some places with room, the same each time; ways to them are looked up."""
         rng = np.random.default_rng(0)
-        return tuple(self.place(rng) for _ in range(STATIONS))
+        return tuple(self.sample_pose(rng) for _ in range(WAYPOINT_COUNT))
 
-    def way_between(self, start: int, goal: int) -> np.ndarray:
+    def path_between(self, start: int, goal: int) -> np.ndarray:
         """The points (N, 2) of the way from one station to another."""
-        if goal not in self._to_stations:
-            self._to_stations[goal] = self.distances_to(self.stations[goal])
-        if (start, goal) not in self._ways:
-            self._ways[start, goal] = self.way(self._to_stations[goal], self.stations[start])
-        return self._ways[start, goal]
+        if goal not in self._waypoint_distances:
+            self._waypoint_distances[goal] = self.distances_to(self.waypoints[goal])
+        if (start, goal) not in self._paths:
+            self._paths[start, goal] = self.path(self._waypoint_distances[goal], self.waypoints[start])
+        return self._paths[start, goal]
 
     def distances_to(self, goal: Pose2) -> np.ndarray:
         """Metres of way to a goal from each cell, float32 (rows, cols), inf where there is none; read only.
 
         Those to the last goals are kept: many episodes have the same.
         """
-        distances = self._to_goals.pop(goal, None)
+        distances = self._goal_distances.pop(goal, None)
         if distances is None:
-            distances = travel_distances(self.grid, self._room, goal, ROOM_TO_PASS)
+            distances = travel_distances(self.grid, self._clearance, goal, PASSAGE_CLEARANCE)
             distances.flags.writeable = False
-        self._to_goals[goal] = distances
-        if len(self._to_goals) > KEPT_GOALS:
-            self._to_goals.popitem(last=False)
+        self._goal_distances[goal] = distances
+        if len(self._goal_distances) > MAX_KEPT_GOALS:
+            self._goal_distances.popitem(last=False)
         return distances
 
     def distance_at(self, distances: np.ndarray, place: Pose2) -> float:
@@ -88,7 +90,7 @@ class Ground:
         window = distances[max(row - 1, 0) : max(row + 2, 0), max(col - 1, 0) : max(col + 2, 0)]
         return float(window.min()) if window.size else math.inf
 
-    def way(self, distances: np.ndarray, start: Pose2, most: int = 1_000_000) -> np.ndarray:
+    def path(self, distances: np.ndarray, start: Pose2, most: int = 1_000_000) -> np.ndarray:
         """The points (N, 2) of a way to the goal that ``distances`` lead to, or the first ``most`` of it."""
         cells = [self._cell_of(start)]
         while distances[cells[-1]] > 0.0 and len(cells) < most:
@@ -106,3 +108,33 @@ class Ground:
         """Row and column: each period asks for one, for which the grid's arrays would take too long."""
         in_grid = self._map_in_grid @ place
         return math.floor(in_grid.y / self.grid.resolution), math.floor(in_grid.x / self.grid.resolution)
+
+
+class DistanceToGoal:
+    """Remaining path length from the robot to a goal.
+
+    Args:
+        space: Traversable space of the world.
+        goal: Goal pose in the world frame.
+        start: Robot pose in the world frame at the start.
+    """
+
+    def __init__(self, space: TraversableSpace, goal: Pose2, start: Pose2):
+        self.goal = goal
+        self._space = space
+        self._distances = space.distances_to(goal)
+        self._remaining = space.distance_at(self._distances, start)
+
+    def waypoint(self, base: Pose2, lookahead: float) -> np.ndarray:
+        """Return the point (2,) ``lookahead`` metres along the shortest path, in the robot's frame."""
+        count = round(lookahead / self._space.grid.resolution) + 1
+        path_xy = self._space.path(self._distances, base, count)
+        return base.inverse().transform_points(path_xy[-1:])[0]
+
+    def decrease(self, base: Pose2) -> float:
+        """Return by how much the distance has decreased since the last call [m]; 0 where no path is known."""
+        remaining = self._space.distance_at(self._distances, base)
+        if not math.isfinite(remaining):
+            return 0.0
+        before, self._remaining = self._remaining, remaining
+        return before - remaining if math.isfinite(before) else 0.0

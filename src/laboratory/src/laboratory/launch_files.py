@@ -12,13 +12,13 @@ from planar import SettingsError, save_map, write_atomically
 from sim_bridge.faults import Fault
 
 
-def stage(scenario: Scenario, seed: int, folder: Path) -> Dict[str, Any]:
+def write_launch_files(scenario: Scenario, seed: int, folder: Path) -> Dict[str, Any]:
     """Writes them into ``folder``; returns the arguments of scenario.launch.
 
     Raises PlanarError if the nodes cannot play it.
     """
     arena = scenario.arena(seed)
-    files = scenario.task.files_for_nodes(arena, seed, folder)
+    files = scenario.task.launch_files(arena, seed, folder)
     if arena.grid is None:
         raise SettingsError(f"{scenario.file}: nodes can only play in a world with a map")
     arguments: Dict[str, Any] = {
@@ -27,12 +27,12 @@ def stage(scenario: Scenario, seed: int, folder: Path) -> Dict[str, Any]:
         "robot": scenario.robot,
         "map_file": save_map(arena.grid, folder / "map"),
         "marker_mode": "mission" if "mission_file" in files else "service",
-        "parameters_file": write_yaml(folder / "parameters.yaml", parameters_of(scenario)),
+        "parameters_file": write_yaml(folder / "parameters.yaml", node_parameters(scenario)),
         **files,
     }
     arguments.update(_driver(scenario.planner))
     if scenario.faults:
-        faults = {"faults": [table_of(fault) for fault in scenario.faults]}
+        faults = {"faults": [fault_table(fault) for fault in scenario.faults]}
         arguments["faults_file"] = write_yaml(folder / "faults.yaml", faults)
     return arguments
 
@@ -40,12 +40,12 @@ def stage(scenario: Scenario, seed: int, folder: Path) -> Dict[str, Any]:
 def _driver(planner: str) -> Dict[str, str]:
     if planner != OFFICIAL:
         return {"planner": planner} if planner else {}
-    from laboratory.ros.official import official_move_base
+    from laboratory.ros import official_move_base
 
     return {"move_base_pkg": official_move_base()}
 
 
-def parameters_of(scenario: Scenario) -> Dict[str, Any]:
+def node_parameters(scenario: Scenario) -> Dict[str, Any]:
     """By node, its parameters that are not as usual."""
     start = scenario.start
     initial = {f"initial_pose_{key}": value for key, value in zip("xya", (start.x, start.y, start.yaw))}
@@ -57,7 +57,7 @@ def parameters_of(scenario: Scenario) -> Dict[str, Any]:
     }
 
 
-def table_of(fault: Fault) -> Dict[str, Any]:
+def fault_table(fault: Fault) -> Dict[str, Any]:
     """As a list of faults has it."""
     table = dataclasses.asdict(fault)
     return {key: value for key, value in table.items() if value != math.inf}

@@ -5,24 +5,24 @@ from typing import Any, Dict, Sequence
 import numpy as np
 from gymnasium import spaces
 
-from home_service_gym.maps.around import MapAround, map_space
-from home_service_gym.playground import Moment, Playground
-from home_service_gym.task import FARTHEST_GOAL, Beginning, Judgement, Marks, Task
+from home_service_gym.episode_simulation import EpisodeSimulation, EpisodeState
+from home_service_gym.maps.egocentric_map import EgocentricMap, map_space
+from home_service_gym.task import MAX_GOAL_DISTANCE, EpisodeStart, EpisodeTask, Overlay, TaskStep
 from planar import Pose2, SettingsError
 from sim_bridge.world import Body
 
 # Of nobody: far ahead, and at rest. m/s, which nobody exceeds.
-NOBODY = (FARTHEST_GOAL, 0.0, 0.0, 0.0)
+NOBODY = (MAX_GOAL_DISTANCE, 0.0, 0.0, 0.0)
 FASTEST = 5.0
 
 
-class Surroundings:
+class PeopleAndMapTask:
     """``task`` with the nearest ``people``, so many of them, and with a picture of the map if it ``has_map``.
 
     Both are the truth, whether the robot sees them or not. Raises SettingsError.
     """
 
-    def __init__(self, task: Task, people: int, has_map: bool):
+    def __init__(self, task: EpisodeTask, people: int, has_map: bool):
         if people < 0:
             raise SettingsError(f"people must not be negative, got {people}")
         if has_map and "map" in task.spaces():
@@ -35,31 +35,31 @@ class Surroundings:
     def spaces(self) -> Dict[str, spaces.Space[Any]]:
         told = dict(self._task.spaces())
         if self._people:
-            most = np.array((FARTHEST_GOAL, FARTHEST_GOAL, FASTEST, FASTEST), np.float32)
+            most = np.array((MAX_GOAL_DISTANCE, MAX_GOAL_DISTANCE, FASTEST, FASTEST), np.float32)
             most = np.tile(most, (self._people, 1))
             told["people"] = spaces.Box(-most, most, dtype=np.float32)
         if self._has_map:
             told["map"] = map_space()
         return told
 
-    def begin(self, playground: Playground, rng: np.random.Generator) -> Beginning:
+    def reset(self, simulation: EpisodeSimulation, rng: np.random.Generator) -> EpisodeStart:
         if self._has_map:
-            self._map = MapAround(playground.ground.grid)
-        return self._task.begin(playground, rng)
+            self._map = EgocentricMap(simulation.traversable_space.grid)
+        return self._task.reset(simulation, rng)
 
-    def observe(self, moment: Moment) -> Dict[str, np.ndarray]:
-        told = dict(self._task.observe(moment))
+    def observation(self, state: EpisodeState) -> Dict[str, np.ndarray]:
+        told = dict(self._task.observation(state))
         if self._people:
-            told["people"] = nearest_people(moment.people, moment.base_in_world, self._people)
+            told["people"] = nearest_people(state.people, state.base_in_world, self._people)
         if self._has_map:
-            told["map"] = self._map.seen_from(moment.base_in_world)
+            told["map"] = self._map.view_from(state.base_in_world)
         return told
 
-    def judge(self, moment: Moment) -> Judgement:
-        return self._task.judge(moment)
+    def step(self, state: EpisodeState) -> TaskStep:
+        return self._task.step(state)
 
-    def marks(self) -> Marks:
-        return self._task.marks()
+    def overlay(self) -> Overlay:
+        return self._task.overlay()
 
 
 def nearest_people(people: np.ndarray, base: Pose2, count: int) -> np.ndarray:
@@ -72,6 +72,6 @@ def nearest_people(people: np.ndarray, base: Pose2, count: int) -> np.ndarray:
     places_xy = inverse.transform_points(people[:, :2])
     order = np.argsort(np.hypot(*places_xy.T), kind="stable")[:count]
     velocities = Pose2(0.0, 0.0, inverse.yaw).transform_points(people[order, 2:4])
-    seen[: len(order), :2] = np.clip(places_xy[order], -FARTHEST_GOAL, FARTHEST_GOAL)
+    seen[: len(order), :2] = np.clip(places_xy[order], -MAX_GOAL_DISTANCE, MAX_GOAL_DISTANCE)
     seen[: len(order), 2:] = np.clip(velocities, -FASTEST, FASTEST)
     return seen

@@ -6,7 +6,7 @@ from typing import Sequence, Tuple
 
 import numpy as np
 
-from home_service_gym.ground import Ground
+from home_service_gym.traversable_space import TraversableSpace
 from laboratory.worlds.source import Arena
 from planar import Pose2, Scan, Twist2
 from sim_bridge import RobotProfile, Simulation, SimulationSettings, StepResult
@@ -21,7 +21,7 @@ HEIGHT = 0.5
 
 
 @dataclass(frozen=True, eq=False)
-class Moment:
+class EpisodeState:
     """The end of a control period; ``touched``: names of what the robot bumped into during it.
 
     ``base_in_world`` and ``people`` are the truth, ``base_in_odom`` and ``twist`` are what odometry tells.
@@ -42,7 +42,7 @@ class Moment:
         return np.minimum(told, np.float32(most), out=told)
 
 
-class Playground:
+class EpisodeSimulation:
     """``rate``: control periods a second, in each of which the lidar and odometry tell once."""
 
     def __init__(
@@ -54,65 +54,65 @@ class Playground:
         self._simulation.mark()
 
     @cached_property
-    def ground(self) -> Ground:
+    def traversable_space(self) -> TraversableSpace:
         """Where there is room, by the truth about the arena as it is at the beginning."""
-        still = [body for body in self.arena.world.bodies if body.is_static]
-        world = replace(self.arena.world, bodies=tuple(still))
+        static_bodies = [body for body in self.arena.world.bodies if body.is_static]
+        world = replace(self.arena.world, bodies=tuple(static_bodies))
         grid = true_map(world, inside=(self.start.x, self.start.y))
-        return Ground(grid, self.start, crowd_of(self.arena.world))
+        return TraversableSpace(grid, self.start, moving_discs(self.arena.world))
 
-    def restart(self, seed: int, start: Pose2, trajectories: Sequence[ScriptedTrajectory] = ()) -> Moment:
+    def reset(self, seed: int, start: Pose2, trajectories: Sequence[ScriptedTrajectory] = ()) -> EpisodeState:
         """Begins an episode with the noise of a seed, and ``courses`` beside those of the world."""
         self._simulation.scene.trajectory_player.trajectories = (
             *self.arena.world.trajectories,
             *trajectories,
         )
         self._simulation.rewind(seed, start)
-        return self.advance(Twist2())
+        return self.step(Twist2())
 
-    def advance(self, command: Twist2) -> Moment:
+    def step(self, command: Twist2) -> EpisodeState:
         """Drives for a control period."""
         seen = self._simulation.step(command)
-        return _moment_of(seen, self._simulation.scene.crowd.rows)
+        return _state_of(seen, self._simulation.scene.crowd.rows)
 
-    def places_of(self, trajectories: Sequence[ScriptedTrajectory], stamp: float) -> np.ndarray:
+    def trajectory_positions(self, trajectories: Sequence[ScriptedTrajectory], stamp: float) -> np.ndarray:
         """Where what goes its own way then is, (N, 2)."""
-        return np.array([course.at(stamp) for course in trajectories]).reshape(-1, 2)
+        return np.array([trajectory.at(stamp) for trajectory in trajectories]).reshape(-1, 2)
 
     def close(self) -> None:
         self._simulation.close()
 
 
-def _moment_of(seen: StepResult, people: np.ndarray) -> Moment:
+def _state_of(seen: StepResult, people: np.ndarray) -> EpisodeState:
     assert seen.scan is not None, "a lidar tells once a period"
     told = seen.odometry
     pose, odom = seen.base_in_world, told.base_in_odom
-    return Moment(seen.stamp, pose, odom, told.twist, seen.scan, seen.contacts, people)
+    return EpisodeState(seen.stamp, pose, odom, told.twist, seen.scan, seen.contacts, people)
 
 
-def crowd_of(world: World) -> np.ndarray:
+def moving_discs(world: World) -> np.ndarray:
     """What does not keep still, as it begins: x, y and radius of each part of it, (N, 3)."""
-    begins = {course.link: course.at(0.0) for course in world.trajectories}
+    begins = {trajectory.link: trajectory.at(0.0) for trajectory in world.trajectories}
     discs = [
         (*begins.get(body.name, middle), float(np.hypot(*(outline - middle).T).max()))
         for body in (*world.bodies, *map(body_of, world.walkers))
         if not body.is_static
         for middle in [body.pose_in_world[:2, 3].tolist()]
-        for outline in outlines_of(standing(world, body), 0.0, HEIGHT)
+        for outline in outlines_of(static_world_of(world, body), 0.0, HEIGHT)
     ]
     return np.array(discs).reshape(-1, 3)
 
 
-def standing(world: World, body: Body) -> World:
+def static_world_of(world: World, body: Body) -> World:
     """With this body alone, which stands where it is."""
     return replace(world, bodies=(replace(body, is_kinematic=False),))
 
 
 def with_lidar_only(robot: RobotProfile) -> RobotProfile:
     """The robot without the sensors that no environment observes, which would cost time."""
-    return replace(robot, sensors=(lidar_of(robot),))
+    return replace(robot, sensors=(lidar_profile(robot),))
 
 
-def lidar_of(robot: RobotProfile) -> LaserProfile:
+def lidar_profile(robot: RobotProfile) -> LaserProfile:
     """Its first one; every robot that is known by name has one."""
     return next(spec for spec in robot.sensors if isinstance(spec, LaserProfile))

@@ -13,43 +13,46 @@ from planar.geometry.distance_field import distance_field
 from planar.geometry.ways import grid_graph
 
 # Metres from a robot's middle to what is solid, on all ways of generated buildings.
-ROOM_TO_PASS = 0.35
+PASSAGE_CLEARANCE = 0.35
 
 
-class Ways:
+class ShortestPaths:
     """Ways along cells whose middle is at least ``radius``, metres, from everything that is not free."""
 
     def __init__(self, grid: OccupancyGrid, radius: float):
         self._grid = grid
-        self._is_open = distance_field(grid.cells != FREE, grid.resolution) > radius
-        self._graph = grid_graph(self._is_open, grid.resolution)
+        self._traversable = distance_field(grid.cells != FREE, grid.resolution) > radius
+        self._graph = grid_graph(self._traversable, grid.resolution)
 
     def length(self, places: Sequence[Pose2]) -> Optional[float]:
         """Metres from place to place, straight to the nearest open cells; None if there is no way."""
         total = 0.0
         for start, end in zip(places, places[1:]):
-            (first, to_first), (last, from_last) = self._nearest(start), self._nearest(end)
+            (first, to_first), (last, from_last) = (
+                self._nearest_traversable(start),
+                self._nearest_traversable(end),
+            )
             length = float(dijkstra(self._graph, directed=False, indices=first)[last])
             if not math.isfinite(length):
                 return None
             total += to_first + length + from_last
         return total
 
-    def _nearest(self, place: Pose2) -> Tuple[int, float]:
+    def _nearest_traversable(self, place: Pose2) -> Tuple[int, float]:
         """Number of the nearest open cell, and how far its middle is."""
-        cells = np.argwhere(self._is_open)
+        cells = np.argwhere(self._traversable)
         distances = np.hypot(*(self._grid.points_of(cells) - (place.x, place.y)).T)
         nearest = int(np.argmin(distances))
         row, col = cells[nearest]
         return int(row * self._grid.cols + col), float(distances[nearest])
 
 
-def regions(grid: OccupancyGrid, radius: float) -> np.ndarray:
+def connected_regions(grid: OccupancyGrid, radius: float) -> np.ndarray:
     """Numbers of connected cells where the middle of a robot of that radius can be, (rows, cols); 0: none."""
     return label(distance_field(grid.cells != FREE, grid.resolution) > radius)[0]
 
 
 @lru_cache(maxsize=8)
-def shortest_way(grid: OccupancyGrid, places: Tuple[Pose2, ...], radius: float) -> Optional[float]:
+def shortest_path_length(grid: OccupancyGrid, places: Tuple[Pose2, ...], radius: float) -> Optional[float]:
     """Metres from place to place for a robot of that radius; None if there is no way."""
-    return Ways(grid, radius).length(places)
+    return ShortestPaths(grid, radius).length(places)

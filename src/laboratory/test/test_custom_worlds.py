@@ -89,7 +89,7 @@ def test_a_scenario_is_played_in_the_world_of_a_generator_by_name(read):
 def test_what_a_scenario_says_of_it_and_its_source_tell_results_apart(read):
     assert read(Corridor).digest() == read(Corridor, "{walls: 2}").digest()
     assert read(Corridor).digest() != read(Corridor, "{width: 3.0}").digest()
-    assert [path.name for path in read(Corridor).world.files()] == ["test_own_worlds.py"]
+    assert [path.name for path in read(Corridor).world.files()] == ["test_custom_worlds.py"]
 
 
 @pytest.mark.parametrize(

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, Dict, Mapping, Optional, Sequence, Tuple
 import numpy as np
 import yaml
 
-from laboratory.tasks.deliveries import play_mission
-from laboratory.tasks.task import Play
+from laboratory.tasks.deliveries import run_mission
+from laboratory.tasks.task import RunTrace
 from laboratory.worlds.source import Arena
 from pick_objects import Delivery, Mission
 from planar import Pose2, SettingsError
@@ -22,24 +22,24 @@ _STREAM = 43
 
 
 @dataclass(frozen=True)
-class Chores:
+class GeneratedDeliveryTask:
     """``count``: deliveries, each from one of the places to another."""
 
     count: int = 4
 
-    def play(self, scenario: "Scenario", arena: Arena, seed: int) -> Play:
-        return play_mission(scenario, arena, seed, self._mission(arena, seed))
+    def run(self, scenario: "Scenario", arena: Arena, seed: int) -> RunTrace:
+        return run_mission(scenario, arena, seed, self._mission(arena, seed))
 
-    def places(self, arena: Arena) -> Sequence[Pose2]:
+    def required_poses(self, arena: Arena) -> Sequence[Pose2]:
         return [place.pose for place in arena.places]
 
-    def way(self, scenario: "Scenario", arena: Arena) -> Optional[float]:
+    def reference_length(self, scenario: "Scenario", arena: Arena) -> Optional[float]:
         return None
 
     def files(self) -> Tuple[Path, ...]:
         return ()
 
-    def files_for_nodes(self, arena: Arena, seed: int, folder: Path) -> Mapping[str, Path]:
+    def launch_files(self, arena: Arena, seed: int, folder: Path) -> Mapping[str, Path]:
         mission = self._mission(arena, seed)
         places = {place.name: _place_as_table(place) for place in mission.places.values()}
         deliveries = [
@@ -71,7 +71,7 @@ def _place_as_table(place: NamedPlace) -> Dict[str, Any]:
     return {"x": pose.x, "y": pose.y, "yaw": pose.yaw, "radius": place.radius}
 
 
-def read_chores(table: Table, folder: Path) -> Chores:
+def read_chores(table: Table, folder: Path) -> GeneratedDeliveryTask:
     """``chores``: how many deliveries."""
     table.allow_only("chores")
-    return Chores(table.count("chores"))
+    return GeneratedDeliveryTask(table.count("chores"))

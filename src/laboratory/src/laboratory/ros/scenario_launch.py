@@ -6,16 +6,16 @@ from pathlib import Path
 from home_service.judging.verdict import ERRAND, MARKERS, OBJECTS
 from home_service.options import LaunchPlan, RunOptions
 from home_service.ros.run_modes import run_to_completion
+from laboratory.launch_files import write_launch_files
 from laboratory.scenario import Scenario
-from laboratory.staging import stage
 from pick_objects import load_mission
 from planar.maps.places import load_places
 
 
-def conduct(options: RunOptions, scenario: Scenario, seed: int) -> int:
+def launch_scenario(options: RunOptions, scenario: Scenario, seed: int) -> int:
     """Runs the graph until the task is done or cannot be any more; returns the exit code."""
     with tempfile.TemporaryDirectory(prefix="scenario-") as folder:
-        arguments = stage(scenario, seed, Path(folder))
+        arguments = write_launch_files(scenario, seed, Path(folder))
         places = load_places(arguments["zones_file"])
         mission_file = arguments.get("mission_file")
         if mission_file:

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from laboratory.generators.offices import Offices
-from laboratory.playing import play
+from laboratory.runner import run_scenario
 from laboratory.scenario import read_scenario
 from laboratory.suites import FOLDER
-from laboratory.tasks.ways import ROOM_TO_PASS, Ways
+from laboratory.tasks.shortest_paths import PASSAGE_CLEARANCE, ShortestPaths
 from planar import Pose2, SettingsError
 from sim_bridge.simulation import box_on_floor
 from sim_bridge.views.true_map import true_map
@@ -36,16 +36,18 @@ def shut_for_good(arena):
 
 def test_the_robot_whose_door_is_shut_goes_the_other_way():
     scenario = read_scenario(SCENARIO)
-    shut, usual = play(scenario, 3), play(replace(scenario, doors=0), 3)
+    shut, usual = run_scenario(scenario, 3), run_scenario(replace(scenario, doors=0), 3)
     assert shut.is_success, shut.reason
     assert shut.driven > 1.8 * usual.driven
-    assert replace(play(scenario, 3), wall_seconds=0.0) == replace(shut, wall_seconds=0.0)
+    assert replace(run_scenario(scenario, 3), wall_seconds=0.0) == replace(shut, wall_seconds=0.0)
 
 
 def test_the_door_of_the_suite_shuts_the_nearest_way_and_another_is_open():
     arena = read_scenario(SCENARIO).arena(0)
     way = (Pose2(), Pose2(2.0, 3.0))
-    nearest, other = (Ways(grid, ROOM_TO_PASS).length(way) for grid in (arena.grid, shut_for_good(arena)))
+    nearest, other = (
+        ShortestPaths(grid, PASSAGE_CLEARANCE).length(way) for grid in (arena.grid, shut_for_good(arena))
+    )
     assert nearest is not None and other is not None and other > 2.0 * nearest
 
 
@@ -54,10 +56,10 @@ def test_doors_of_a_generated_office_leave_a_way_to_every_place():
     shut = 0
     for seed in range(6):
         arena = scenario.arena(seed)
-        doors, places = arena.world.doors, [Pose2(), *scenario.task.places(arena)]
+        doors, places = arena.world.doors, [Pose2(), *scenario.task.required_poses(arena)]
         shut += len(doors)
         assert len(doors) <= 4 and len({door.name for door in doors}) == len(doors)
-        assert Ways(shut_for_good(arena), 0.3).length(places) is not None
+        assert ShortestPaths(shut_for_good(arena), 0.3).length(places) is not None
         again = replace(scenario, name="again").arena(seed)
         assert again.world.doors == doors
     assert shut > 12
@@ -73,7 +75,7 @@ def test_doorways_are_where_walls_leave_them():
 
 
 def test_doors_of_a_world_of_which_none_are_known_are_an_error(tmp_path):
-    result = play(read_scenario(written(tmp_path, "2")), 0)
+    result = run_scenario(read_scenario(written(tmp_path, "2")), 0)
     assert result.outcome == "error"
     assert result.reason == "home: doors need a generated building, or places of their own"
 

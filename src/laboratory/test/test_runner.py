@@ -4,13 +4,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from laboratory.playing import play
 from laboratory.results.result import clearance
+from laboratory.runner import run_scenario
 from laboratory.scenario import read_scenario
 from laboratory.suites import FOLDER
-from laboratory.tasks.reach import Reach
-from laboratory.tasks.ways import Ways
-from laboratory.worlds.boxes import SIZE, TO_OTHERS
+from laboratory.tasks.odom_goal import OdomGoalTask
+from laboratory.tasks.shortest_paths import ShortestPaths
+from laboratory.worlds.boxes import BOX_SPACING, SIZE
 from laboratory.worlds.files import WorldFile
 from planar import Pose2, grid_from_picture
 from sim_bridge import SimulationSettings
@@ -21,7 +21,7 @@ ERRAND = FOLDER / "home_errand.yaml"
 
 def test_a_seed_is_played_alike_and_measured():
     scenario = read_scenario(ERRAND)
-    first, again = play(scenario, 3), play(scenario, 3)
+    first, again = run_scenario(scenario, 3), run_scenario(scenario, 3)
     assert replace(first, wall_seconds=0.0) == replace(again, wall_seconds=0.0)
     assert first.is_success, first.reason
     assert first.way is not None and first.driven is not None
@@ -33,12 +33,12 @@ def test_a_seed_is_played_alike_and_measured():
 
 def test_what_makes_a_run_impossible_is_its_result():
     crowded = replace(read_scenario(ERRAND), boxes=500)
-    result = play(crowded, 0)
+    result = run_scenario(crowded, 0)
     assert result.outcome == "error" and "there is room for" in result.reason
 
 
 def test_a_run_that_takes_too_long_has_run_out_of_time():
-    result = play(replace(read_scenario(ERRAND), seconds=2.0), 1)
+    result = run_scenario(replace(read_scenario(ERRAND), seconds=2.0), 1)
     assert result.outcome == "timeout" and "not done within 2" in result.reason
 
 
@@ -46,9 +46,9 @@ def test_a_goal_is_reached_without_a_map():
     home = read_scenario(ERRAND)
     source = WorldFile(home.world.files()[0])
     rates = SimulationSettings(odometry_rate=100, scan_rate=20)
-    task = Reach(Pose2(1.0, 0.0), 0.3)
+    task = OdomGoalTask(Pose2(1.0, 0.0), 0.3)
     ahead = replace(home, world=source, robot="jackal", simulation=rates, task=task)
-    result = play(ahead, 5)
+    result = run_scenario(ahead, 5)
     assert result.is_success, result.reason
     assert result.localization_mean is None and result.way is None
 
@@ -57,21 +57,21 @@ def test_what_happens_to_the_robot_does_so_without_a_map_too():
     home = read_scenario(ERRAND)
     source = WorldFile(home.world.files()[0])
     rates = SimulationSettings(odometry_rate=100, scan_rate=20)
-    task = Reach(Pose2(1.0, 0.0), 0.1)
+    task = OdomGoalTask(Pose2(1.0, 0.0), 0.1)
     carried = Fault("kidnapped", 0.5, strength=0.4)
     ahead = replace(home, world=source, robot="jackal", simulation=rates, task=task, faults=(carried,))
-    run = ahead.task.play(ahead, ahead.arena(5), 5)
+    run = ahead.task.run(ahead, ahead.arena(5), 5)
     assert np.hypot(*np.diff(run.trajectory[:, 1:3], axis=0).T).max() > 0.3
 
 
 def test_boxes_stand_apart_and_leave_room_at_the_places():
     scenario = replace(read_scenario(ERRAND), boxes=10)
     arena = scenario.arena(4)
-    places = [(pose.x, pose.y) for pose in scenario.task.places(arena)]
+    places = [(pose.x, pose.y) for pose in scenario.task.required_poses(arena)]
     boxes = [body.pose_in_world[:2, 3] for body in arena.world.bodies if body.name.startswith("box_")]
     assert len(boxes) == 10
     for number, box in enumerate(boxes):
-        assert all(math.dist(box, other) > TO_OTHERS for other in boxes[:number])
+        assert all(math.dist(box, other) > BOX_SPACING for other in boxes[:number])
         assert all(math.dist(box, place) > SIZE[0] for place in places)
     again = [body.pose_in_world for body in scenario.arena(4).world.bodies]
     np.testing.assert_array_equal(again, [body.pose_in_world for body in arena.world.bodies])
@@ -79,7 +79,7 @@ def test_boxes_stand_apart_and_leave_room_at_the_places():
 
 def test_the_shortest_way_goes_round_a_wall():
     room = grid_from_picture("\n".join(["." * 41] * 20 + ["#" * 31 + "." * 10] + ["." * 41] * 20), 0.1)
-    ways = Ways(room, 0.2)
+    ways = ShortestPaths(room, 0.2)
     below, above = Pose2(0.55, 0.55), Pose2(0.55, 3.55)
     corner = math.hypot(3.35 - 0.55, 2.05 - 0.55)
     assert ways.length((below, above)) == pytest.approx(2 * corner, rel=0.05)
@@ -88,7 +88,7 @@ def test_the_shortest_way_goes_round_a_wall():
 
 def test_there_is_no_way_through_a_closed_wall():
     room = grid_from_picture("\n".join(["." * 20] * 10 + ["#" * 20] + ["." * 20] * 10), 0.1)
-    assert Ways(room, 0.1).length((Pose2(0.5, 0.5), Pose2(0.5, 1.6))) is None
+    assert ShortestPaths(room, 0.1).length((Pose2(0.5, 0.5), Pose2(0.5, 1.6))) is None
 
 
 def test_clearance_is_the_distance_to_the_nearest_wall():

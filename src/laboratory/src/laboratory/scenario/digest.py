@@ -1,0 +1,91 @@
+"""Digests of scenarios, by which stored results are found."""
+
+import hashlib
+import json
+from dataclasses import fields, is_dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Dict
+
+from laboratory.results.version import version_over_ros
+from planar import SettingsError
+from planar.plugins import source_files
+
+if TYPE_CHECKING:
+    from laboratory.scenario.scenario import Scenario
+
+# Fields that do not change a run.
+_IGNORED: Dict[str, Any] = {"name": "", "about": "", "seeds": (), "file": None}
+# Names of classes and fields in digests from before they were renamed, so that stored results stay valid.
+_CLASS_NAMES = {
+    "CrossingCylinders": "Crossings",
+    "CustomWorlds": "OwnWorlds",
+    "CylinderFields": "Fields",
+    "DeliveryTask": "Deliveries",
+    "GeneratedDeliveryTask": "Chores",
+    "OdomGoalTask": "Reach",
+}
+_FIELD_NAMES = {
+    "max_area": "largest",
+    "max_count": "most",
+    "max_speed": "fastest",
+    "min_area": "least",
+    "min_count": "fewest",
+    "min_speed": "slowest",
+    "routes": "walks",
+    "unspecified": "anyone",
+}
+
+
+def scenario_digest(scenario: "Scenario") -> str:
+    """Compute a digest that two scenarios share only if their runs are the same.
+
+    It covers all values but the name, the description and the seeds, the contents of the scenario's files,
+    and the sources of custom planners, faults and world generators.
+
+    Returns:
+        16 hexadecimal digits.
+
+    Raises:
+        PlanarError: A file of the scenario cannot be read.
+    """
+    values = {**_plain(scenario), **_IGNORED}
+    kinds = [_class_name(scenario.world), _class_name(scenario.task)]
+    custom = source_files((scenario.planner, *(fault.kind for fault in scenario.faults)))
+    files = [_content(path) for path in (*scenario.world.files(), *scenario.task.files(), *custom)]
+    software = [version_over_ros()] if scenario.is_over_ros else []
+    text = json.dumps([kinds, files, software, values], sort_keys=True, default=_without_path)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def _plain(value: Any) -> Any:
+    """Convert as ``dataclasses.asdict`` does, with the names of old digests."""
+    if is_dataclass(value) and not isinstance(value, type):
+        is_own = type(value).__module__.startswith("laboratory.")
+        return {
+            _FIELD_NAMES.get(field.name, field.name) if is_own else field.name: _plain(
+                getattr(value, field.name)
+            )
+            for field in fields(value)
+        }
+    if isinstance(value, (list, tuple)):
+        return [_plain(each) for each in value]
+    if isinstance(value, dict):
+        return {key: _plain(each) for key, each in value.items()}
+    return value
+
+
+def _class_name(value: Any) -> str:
+    name = type(value).__name__
+    return _CLASS_NAMES.get(name, name)
+
+
+def _without_path(value: Any) -> Any:
+    """Where a file lies does not count, only its content."""
+    return None if isinstance(value, Path) else str(value)
+
+
+def _content(path: Path) -> str:
+    try:
+        return hashlib.sha256(path.read_bytes()).hexdigest()
+    except OSError as error:
+        raise SettingsError(f"{path}: {error.strerror}") from None
