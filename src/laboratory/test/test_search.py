@@ -135,9 +135,7 @@ def test_parameters_are_nested_as_move_base_has_them(tmp_path):
 def test_a_space_that_is_none_is_told_with_line_and_key(tmp_path):
     path = tmp_path / "space.yaml"
     path.write_text("Planner:\n  speed: [0.5, 0.1]\n")
-    with pytest.raises(
-        SettingsError, match=r"space.yaml:2: Planner.speed must be two numbers, the smallerer"
-    ):
+    with pytest.raises(SettingsError, match=r"space.yaml:2: Planner.speed must be two numbers, the lesser"):
         read_space(path)
 
 
