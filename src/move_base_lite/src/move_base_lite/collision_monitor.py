@@ -26,7 +26,11 @@ CLEAR, SLOWED, STOPPED = "clear", "slowed", "stopped"
 
 @dataclass(frozen=True)
 class MonitorSettings:
-    """Parameters of the collision monitor."""
+    """Parameters of the collision monitor.
+
+    Raises:
+        SettingsError: On construction, for a value out of bounds.
+    """
 
     footprint: Tuple[Tuple[float, float], ...] = parameter(
         (), "corners [x, y] in the base frame; empty: a circle of robot_radius", "m"
@@ -67,6 +71,11 @@ class CollisionMonitor:
     """Checks one command at a time against the points of a scan."""
 
     def __init__(self, settings: MonitorSettings):
+        """Create the monitor.
+
+        Args:
+            settings: Footprint, stop distance and time to collision.
+        """
         self._settings = settings
         outline: Footprint = footprint_from(settings.footprint, settings.robot_radius, 0.0)
         self._corners_xy = outline.corners_xy

@@ -22,7 +22,10 @@ from planar.config.parameters import POSITIVE, Parameter, at_least, check_parame
 
 @dataclass(frozen=True)
 class MoveBaseSettings:
-    """move_base's own parameters; sensor_patience is an addition."""
+    """move_base's own parameters, and ``sensor_patience``.
+
+    Each field is a parameter; its meaning, unit and bounds are in its ``parameter(...)``.
+    """
 
     controller_frequency: float = parameter(20.0, "rate of velocity commands", "Hz", POSITIVE, dynamic=100.0)
     planner_frequency: float = parameter(

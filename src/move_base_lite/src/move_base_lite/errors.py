@@ -67,6 +67,12 @@ class ControlError(NavigationError):
     outcome = 100
 
     def __init__(self, text: str, trajectory_samples: "Optional[TrajectorySamples]" = None):
+        """Create the error.
+
+        Args:
+            text: Reason, for people.
+            trajectory_samples: Samples that the local planner evaluated.
+        """
         super().__init__(text)
         self.trajectory_samples = trajectory_samples
 
@@ -94,7 +100,7 @@ class Oscillation(NavigationError):
 
 
 class SensorStale(NavigationError):
-    """Sensor data stay away, so the robot must not move."""
+    """A sensor sends no data, so the robot must not move."""
 
     code = "SENSOR_STALE"
 

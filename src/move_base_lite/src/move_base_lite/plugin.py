@@ -63,7 +63,11 @@ class Plugin(Generic[T]):
         return self.ignored | {tunable.name for tunable in self.without_effect}
 
     def old_names(self, name: str) -> Tuple[str, ...]:
-        """Other names of a parameter."""
+        """Return the deprecated names and synonyms of a parameter.
+
+        Args:
+            name: Present name of the parameter.
+        """
         return tuple(old for old, new in {**self.deprecated, **self.synonyms}.items() if new == name)
 
 
@@ -100,7 +104,7 @@ class Registry(Generic[T]):
             The plugin; None if there is none.
 
         Raises:
-            PluginError: If a user-defined class cannot be loaded or does not fulfil the contract.
+            PluginError: A user-defined class cannot be loaded or does not fulfil the contract.
         """
         if "." not in name.rpartition("/")[0]:
             for member in self.members:
@@ -109,10 +113,10 @@ class Registry(Generic[T]):
         return self._loaded.get(name) or self._load(name)
 
     def make(self, settings: Any, *given: Any) -> T:
-        """Construct the plugin whose settings are given.
+        """Construct the plugin that belongs to given settings.
 
         Args:
-            settings: Its settings; their type selects the plugin.
+            settings: Settings of the plugin; their type selects the plugin.
             given: Further arguments, as the contract states.
         """
         known = (*self.members, *self._loaded.values())

@@ -1,4 +1,4 @@
-"""Guard around calls of user-defined plugins: what goes wrong in them becomes an error with their name."""
+"""Guard around calls of user-defined plugins: errors in them are raised again with their name."""
 
 import math
 from contextlib import contextmanager
@@ -21,7 +21,7 @@ class PluginGuard(Generic[T]):
     Args:
         name: Dotted name of the plugin's class, for messages.
         make: Constructs the plugin.
-        failure: Error to raise for everything that goes wrong in it.
+        failure: Error to raise for any failure of the plugin.
     """
 
     def __init__(self, name: str, make: Callable[[], T], failure: Type[PluginFailed]):
@@ -32,7 +32,11 @@ class PluginGuard(Generic[T]):
         self._was_called = False
 
     def fail(self, text: str) -> PluginFailed:
-        """Make the error for a fault of the plugin."""
+        """Create the error for a fault of the plugin.
+
+        Args:
+            text: Description of the fault, to follow the plugin's name.
+        """
         return self._failure(f"{self.name} {text}")
 
     @contextmanager
@@ -46,7 +50,8 @@ class PluginGuard(Generic[T]):
             The plugin.
 
         Raises:
-            PluginFailed: If it raises anything but a NavigationError, changes the arrays or takes too long.
+            PluginFailed: The plugin raised anything but a NavigationError, changed the arrays or took too
+                long.
         """
         before = [array.tobytes() for array in read_only]
         watch = Stopwatch()
@@ -71,6 +76,13 @@ class PluginGuard(Generic[T]):
             raise self.fail(f"took {seconds:.1f} s for an answer")
 
     def check_velocity(self, twist: Twist2) -> None:
-        """Raise PluginFailed if a velocity is not finite."""
+        """Check that a velocity of the plugin is finite.
+
+        Args:
+            twist: Velocity command.
+
+        Raises:
+            PluginFailed: It is not finite.
+        """
         if not (math.isfinite(twist.v) and math.isfinite(twist.omega)):
             raise self.fail(f"asked for {twist.v} m/s, {twist.omega} rad/s")

@@ -43,7 +43,7 @@ os.register_at_fork(after_in_child=_reset)
 class Stopwatch:
     """Measures wall time from its construction, less the time its thread waits for a processor.
 
-    Without /proc/thread-self/schedstat it measures wall time.
+    Without ``/proc/thread-self/schedstat`` it measures wall time.
     """
 
     def __init__(self) -> None:

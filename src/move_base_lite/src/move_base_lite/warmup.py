@@ -14,7 +14,7 @@ def warm_up(settings: NavigatorSettings) -> None:
     """Run two control periods in an empty map, so that the first goal does not wait for the compiler.
 
     Args:
-        settings: Settings of the Navigator; they select the kernels.
+        settings: Settings of the Navigator, which select the kernels.
     """
     static = replace(settings.global_costmap.static, enabled=True)
     settings = replace(settings, global_costmap=replace(settings.global_costmap, static=static))

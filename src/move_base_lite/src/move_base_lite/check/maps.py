@@ -71,7 +71,14 @@ class CheckMap:
 
 
 def check_map(name: str) -> CheckMap:
-    """The map of that name (see PICTURES), in cells of RESOLUTION."""
+    """Return the map of a name.
+
+    Args:
+        name: Key of PICTURES.
+
+    Returns:
+        Costmap with cells of RESOLUTION, start and goal.
+    """
     picture = PICTURES[name].strip()
     coarse = grid_from_picture(picture.replace("S", ".").replace("G", "."), CELL)
     times = round(CELL / RESOLUTION)
@@ -93,12 +100,18 @@ def _centre_of(mark: str, picture: str) -> Tuple[float, float]:
 
 
 def context_of(costmap: LayeredCostmap, pose: Pose2, twist: Twist2 = Twist2()) -> ControlContext:
-    """A context without dynamic obstacles in which map and odom frame coincide."""
+    """Create a context without dynamic obstacles, in which map and odom frame coincide.
+
+    Args:
+        costmap: Local and global costmap.
+        pose: Robot pose in the costmap's frame.
+        twist: Velocity of the robot.
+    """
     return ControlContext(pose, pose, twist, costmap, NO_DYNAMIC_OBSTACLES, costmap)
 
 
 def plan_in(room: CheckMap) -> np.ndarray:
-    """navfn's path (N, 2) from start to goal."""
+    """Plan navfn's path (N, 2) from start to goal [m]."""
     costs, window = room.costmap.costs, room.costmap.window
     return Navfn(NavfnSettings()).plan(costs, window, room.start_xy, room.goal_xy)
 
@@ -133,6 +146,6 @@ def drive(plugin: Plugin[Any], room: CheckMap, seconds: float = 40.0) -> List[Po
 
 
 def moved(pose: Pose2, twist: Twist2) -> Pose2:
-    """The pose after one period at a velocity."""
+    """Compute the pose after one period at a velocity."""
     half_turn, distance = 0.5 * twist.omega * PERIOD, twist.v * PERIOD
     return pose @ Pose2(distance * math.cos(half_turn), distance * math.sin(half_turn), 2.0 * half_turn)

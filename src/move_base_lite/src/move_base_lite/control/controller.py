@@ -69,11 +69,22 @@ class Controller:
         self._commanded_omega: Optional[float] = None
 
     def change(self, settings: ControllerSettings, period: float, planner: LocalPlanner) -> None:
-        """Replace settings and local planner; the plan stays."""
+        """Replace settings and local planner; the plan stays.
+
+        Args:
+            settings: Settings of the local planner.
+            period: Control period [s].
+            planner: Local planner constructed with these settings and this period.
+        """
         self._settings, self._period, self._planner = settings, period, planner
 
     def set_plan(self, path_xy: np.ndarray, goal_in_map: Pose2) -> None:
-        """Follow another path (N, 2) in the map frame; a different goal resets the arrival state."""
+        """Follow another path; a different goal resets the arrival state.
+
+        Args:
+            path_xy: (N, 2), in the map frame [m].
+            goal_in_map: Goal pose in the map frame.
+        """
         self._progress = PathProgress(path_xy)
         if goal_in_map != self._goal_in_map:
             self._goal_in_map = goal_in_map
@@ -81,7 +92,12 @@ class Controller:
             self._arrivals = 0
 
     def is_goal_reached(self, base_in_map: Pose2, twist: Twist2) -> bool:
-        """Whether the robot is within both goal tolerances and stopped."""
+        """Check whether the robot is within both goal tolerances and stopped.
+
+        Args:
+            base_in_map: Robot pose in the map frame.
+            twist: Velocity of the robot.
+        """
         settings = self._settings
         return (
             self._is_at_goal_position(base_in_map)
@@ -106,6 +122,9 @@ class Controller:
         Args:
             context: Robot state, costmaps and dynamic obstacles.
             max_speeds: Speed limits in addition to those of the settings [m/s, rad/s].
+
+        Returns:
+            Command and predicted trajectory.
 
         Raises:
             ControlError: No velocity is safe.

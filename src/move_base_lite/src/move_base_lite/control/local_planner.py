@@ -86,13 +86,13 @@ class TrajectorySamples(Protocol):
 @renamed_fields(exploration="trajectory_samples")
 @dataclass(frozen=True, eq=False)
 class Trajectory:
-    """The velocity command for the coming period and the predicted trajectory.
+    """Velocity command for the coming period and predicted trajectory.
 
     Attributes:
         command: Velocity command [m/s, rad/s].
         poses: (N, 3) of x, y, yaw in the local frame [m, rad]; the first is the robot's pose.
-        cost: Finite, in the planner's own unit.
-        trajectory_samples: The trajectories it was chosen from, if the planner can show them.
+        cost: Cost of the trajectory, finite, in any unit of the planner.
+        trajectory_samples: Trajectories from which it was chosen, if the planner can show them.
     """
 
     command: Twist2

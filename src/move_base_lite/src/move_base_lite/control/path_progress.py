@@ -16,13 +16,23 @@ class PathProgress:
     """
 
     def __init__(self, path_xy: np.ndarray):
+        """Start at the first point of a path.
+
+        Args:
+            path_xy: (N, 2), in the map frame [m].
+        """
         self.path_xy = path_xy
         steps = np.linalg.norm(np.diff(path_xy, axis=0), axis=1)
         self._travelled = np.concatenate(([0.0], np.cumsum(steps)))
         self._index = 0
 
     def advance(self, x: float, y: float) -> None:
-        """Move on to the point nearest to (x, y) within SEARCH_AHEAD."""
+        """Advance to the point nearest to the robot, within SEARCH_AHEAD along the path.
+
+        Args:
+            x: Robot position in the map frame [m].
+            y: Robot position in the map frame [m].
+        """
         end = int(np.searchsorted(self._travelled, self._travelled[self._index] + SEARCH_AHEAD)) + 1
         ahead = self.path_xy[self._index : end]
         self._index += int(np.argmin((ahead[:, 0] - x) ** 2 + (ahead[:, 1] - y) ** 2))
@@ -38,7 +48,17 @@ class PathProgress:
         return float(self._travelled[-1] - self._travelled[self._index])
 
     def heading_error(self, x: float, y: float, yaw: float, lookahead: float) -> float:
-        """Angle from the robot's heading to the plan's point ``lookahead`` metres on, in [-pi, pi)."""
+        """Compute the angle from the robot's heading to a point ahead on the plan.
+
+        Args:
+            x: Robot position in the map frame [m].
+            y: Robot position in the map frame [m].
+            yaw: Heading of the robot [rad].
+            lookahead: Distance of the point along the plan [m].
+
+        Returns:
+            Angle in [-pi, pi).
+        """
         target = min(
             int(np.searchsorted(self._travelled, self._travelled[self._index] + lookahead)),
             len(self.path_xy) - 1,

@@ -31,7 +31,7 @@ class GuardedLocalPlanner:
         self._guard = PluginGuard(name, make, ControlPluginFailed)
 
     def follow(self, context: ControlContext, plan: Plan, limits: Twist2) -> Trajectory:
-        """See LocalPlanner.follow.
+        """Call the wrapped planner (see LocalPlanner.follow).
 
         Raises:
             ControlPluginFailed: The planner raised, took too long, modified its arguments or returned an
@@ -69,8 +69,11 @@ LOCAL_PLANNERS: Registry[LocalPlanner] = Registry(
 def check_local_planner(name: str) -> None:
     """Check a local planner's name given by a user.
 
-    (The parameter ``base_local_planner`` may name planners of the official stack; move_base then falls back
-    to the first of LOCAL_PLANNERS.)
+    The parameter ``base_local_planner`` may also have a name of the official stack that is unknown here;
+    move_base then uses the first of LOCAL_PLANNERS.
+
+    Args:
+        name: Name of the planner.
 
     Raises:
         SettingsError: There is no local planner of this name.

@@ -21,7 +21,9 @@ PASSING_HORIZON, PASSING_DISTANCE = 3.0, 0.3
 def turn_in_place(
     settings: ControllerSettings, context: ControlContext, error: float, period: float
 ) -> Optional[Twist2]:
-    """Command that reduces a heading error, the other way round if this way is obstructed.
+    """Compute the command that reduces a heading error by turning in place.
+
+    If the shorter direction is obstructed, the robot turns the other way.
 
     Args:
         settings: Limits of speed and acceleration.
@@ -30,7 +32,7 @@ def turn_in_place(
         period: Control period [s].
 
     Returns:
-        None if there is no room to turn, or to stop first if the robot moves.
+        The command; None if there is no room to turn, or to stop first if the robot moves.
     """
     if not can_stop(settings, context, period):
         return None
@@ -41,7 +43,13 @@ def turn_in_place(
 
 
 def can_stop(settings: ControllerSettings, context: ControlContext, period: float) -> bool:
-    """Whether no further point of the footprint is in collision along the stopping distance."""
+    """Check whether the robot can stop without another point of its footprint in collision.
+
+    Args:
+        settings: Acceleration limit.
+        context: Robot state and costmaps.
+        period: Control period [s].
+    """
     costmap, base_in_local = context.costmap, context.base_in_local
     distance = STOPPING_MARGIN * stopping_distance(settings, context.twist, period)
     if abs(distance) < costmap.window.resolution:
@@ -52,7 +60,13 @@ def can_stop(settings: ControllerSettings, context: ControlContext, period: floa
 
 
 def blocks_dynamic_obstacle(settings: ControllerSettings, context: ControlContext, period: float) -> bool:
-    """Whether a dynamic obstacle would soon come near the robot if it stopped here."""
+    """Check whether a dynamic obstacle would soon come near the robot if it stopped here.
+
+    Args:
+        settings: Acceleration limit, for the stopping distance.
+        context: Robot state and dynamic obstacles.
+        period: Control period [s].
+    """
     obstacles = context.dynamic_obstacles
     stop = context.base_in_local @ Pose2(stopping_distance(settings, context.twist, period), 0.0)
     offsets, velocities = obstacles[:, :2] - (stop.x, stop.y), obstacles[:, 2:4]
@@ -63,12 +77,28 @@ def blocks_dynamic_obstacle(settings: ControllerSettings, context: ControlContex
 
 
 def stopping_distance(settings: ControllerSettings, twist: Twist2, period: float) -> float:
-    """Distance until the robot stands [m], negative if it drives backwards."""
+    """Compute the distance until the robot stands.
+
+    Args:
+        settings: Acceleration limit.
+        twist: Velocity of the robot.
+        period: Control period, in which the robot does not decelerate yet [s].
+
+    Returns:
+        Distance [m], negative if the robot drives backwards.
+    """
     return twist.v * (period + abs(twist.v) / (2.0 * settings.acc_lim_x))
 
 
 def rotation_towards(settings: ControllerSettings, error: float, twist: Twist2, period: float) -> Twist2:
-    """Command that turns by ``error`` [rad], as fast as the robot can still stop; brakes v first."""
+    """Compute the command that turns by an angle, as fast as the robot can still stop; it reduces v first.
+
+    Args:
+        settings: Limits of turn rate and acceleration.
+        error: Angle to turn by [rad].
+        twist: Velocity of the robot.
+        period: Control period [s].
+    """
     stoppable = math.sqrt(2.0 * BRAKING_SHARE * settings.acc_lim_theta * abs(error))
     speed = min(max(stoppable, settings.min_vel_theta), settings.max_vel_theta, abs(error) / period)
     target = math.copysign(speed, error)
@@ -78,12 +108,18 @@ def rotation_towards(settings: ControllerSettings, error: float, twist: Twist2, 
 
 
 def stopping_command(settings: ControllerSettings, twist: Twist2, period: float) -> Twist2:
-    """The command nearest to a standstill that the accelerations allow within ``period`` [s]."""
+    """Compute the command nearest to a standstill that the acceleration limits allow.
+
+    Args:
+        settings: Limits of acceleration.
+        twist: Velocity of the robot.
+        period: Control period [s].
+    """
     return Twist2(
         braked(twist.v, settings.acc_lim_x * period), braked(twist.omega, settings.acc_lim_theta * period)
     )
 
 
 def braked(speed: float, change: float) -> float:
-    """A speed reduced by ``change``, not beyond zero."""
+    """Reduce the magnitude of a speed by ``change``, at most to zero."""
     return math.copysign(max(abs(speed) - change, 0.0), speed)

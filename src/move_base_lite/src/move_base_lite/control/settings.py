@@ -14,7 +14,10 @@ OFFERED_TO_20 = 20.0
 
 @dataclass(frozen=True)
 class ControllerSettings:
-    """Settings of any local planner: limits of speed and acceleration, and those of the Controller."""
+    """Settings of any local planner: limits of speed and acceleration, and those of the Controller.
+
+    Each field is a parameter; its meaning, unit and bounds are in its ``parameter(...)``.
+    """
 
     max_vel_trans: float = parameter(0.55, "maximum speed", "m/s", POSITIVE, dynamic=True)
     min_vel_trans: float = parameter(
@@ -50,7 +53,7 @@ class ControllerSettings:
 
     @property
     def tracker_settings(self) -> Optional[TrackerSettings]:
-        """Settings of the dynamic obstacle tracker; None: obstacles are not tracked."""
+        """Settings of the dynamic obstacle tracker; None if obstacles are not tracked."""
         return getattr(self, "lookout", None)  # deprecated name, which a custom planner's settings may have
 
     def reachable(self, now: Twist2, target: Twist2, limits: Twist2, period: float) -> Twist2:

@@ -41,7 +41,13 @@ class LayeredCostmap:
         grid: Optional[OccupancyGrid] = None,
         map_window: Optional[CostmapWindow] = None,
     ):
-        """``map_window`` keeps the size of a map whose layer has been disabled since."""
+        """Create a costmap without observations.
+
+        Args:
+            settings: Parameters of the costmap and its layers.
+            grid: Static map, if there is one.
+            map_window: Window of the static map; keeps its size if the static layer has been disabled since.
+        """
         self.settings = settings
         self.footprint: Footprint = footprint_from(
             settings.footprint, settings.robot_radius, settings.footprint_padding
@@ -89,7 +95,11 @@ class LayeredCostmap:
         self.recompute(changed)
 
     def recompute(self, changed: CellBounds) -> None:
-        """Apply all layers again in a block that has changed."""
+        """Apply all layers again.
+
+        Args:
+            changed: Block of cells that have changed; it is grown by the reach of inflation.
+        """
         bounds = self.window.grown(changed, self._reach_cells)
         self.costs[bounds.slices] = self._default
         for layer in self._layers:
@@ -106,7 +116,15 @@ class LayeredCostmap:
         self._zones.set_zones(blocked, occupied)
 
     def with_settings(self, settings: CostmapSettings) -> "LayeredCostmap":
-        """Return a costmap with other settings; it keeps the observations unless the size changes."""
+        """Return a costmap with other settings.
+
+        Args:
+            settings: Parameters of the costmap and its layers.
+
+        Returns:
+            The costmap, with the observations of this one unless the size changes; this one if nothing
+            changes.
+        """
         if settings == self.settings:
             return self
         changed = LayeredCostmap(settings, self._map, self._map_window)
@@ -126,22 +144,34 @@ class LayeredCostmap:
             self.recompute(self.window.everything)
 
     def pop_changed_bounds(self) -> CellBounds:
-        """Return the block of cells that may have changed since the last call, and start over."""
+        """Return the block of cells that may have changed since the last call."""
         changed, self._changed = self._changed, NO_CELLS
         return changed
 
     def collides(self, pose: Pose2) -> bool:
-        """Whether the footprint at ``pose`` touches an obstacle, unknown space or the edge."""
+        """Check whether the footprint touches an obstacle, unknown space or the edge of the costmap.
+
+        Args:
+            pose: Pose of the base in the costmap's frame.
+        """
         return collides(self.costs, self.window, self.outline_xy, pose)
 
     def contacts(self, pose: Pose2) -> int:
-        """Count the points of the footprint at ``pose`` that collide."""
+        """Count the points of the footprint that collide.
+
+        Args:
+            pose: Pose of the base in the costmap's frame.
+        """
         return contacts(self.costs, self.window, self.outline_xy, pose)
 
     def has_room_to_turn(self, pose: Pose2, angle: float) -> bool:
-        """Whether the robot can rotate in place by ``angle`` [rad] without touching more than it does now.
+        """Check whether the robot can rotate in place without touching more than it does now.
 
         A footprint that is round to within one cell always can.
+
+        Args:
+            pose: Pose of the base in the costmap's frame.
+            angle: Rotation [rad].
         """
         spread = self.footprint.circumscribed_radius - self.footprint.inscribed_radius
         if spread < self.window.resolution:
@@ -151,12 +181,22 @@ class LayeredCostmap:
         return all(self.contacts(pose @ Pose2(0.0, 0.0, float(turn))) <= touching for turn in turns)
 
     def clear_outside(self, base_in_frame: Pose2, side: float) -> None:
-        """Clear obstacles (not the map) outside a square around the robot, ``side`` in metres."""
+        """Clear obstacles (not the map) outside of a square around the robot.
+
+        Args:
+            base_in_frame: Robot pose in the costmap's frame.
+            side: Side of the square [m].
+        """
         bounds = self.window.bounds_around(base_in_frame.x, base_in_frame.y, 0.5 * side)
         self._recompute_blocks([layer.clear_outside(bounds, self.window) for layer in self._layers])
 
     def clear_around(self, base_in_frame: Pose2, side: float) -> None:
-        """Clear obstacles (not the map) inside a square around the robot, ``side`` in metres."""
+        """Clear obstacles (not the map) inside a square around the robot.
+
+        Args:
+            base_in_frame: Robot pose in the costmap's frame.
+            side: Side of the square [m].
+        """
         bounds = self.window.bounds_around(base_in_frame.x, base_in_frame.y, 0.5 * side)
         self._recompute_blocks([layer.clear_inside(bounds) for layer in self._layers])
 

@@ -40,7 +40,14 @@ class Footprint:
         return float(np.linalg.norm(self.corners_xy, axis=1).max())
 
     def outline_xy(self, spacing: float) -> np.ndarray:
-        """Sample points (M, 2) along the outline, at most ``spacing`` metres apart, in the base frame."""
+        """Sample points along the outline.
+
+        Args:
+            spacing: Largest distance between consecutive points [m].
+
+        Returns:
+            (M, 2), in the base frame [m].
+        """
         pieces = []
         for start, end in zip(self.corners_xy, np.roll(self.corners_xy, -1, axis=0)):
             count = max(1, math.ceil(float(np.linalg.norm(end - start)) / spacing))
@@ -64,7 +71,14 @@ def footprint_from(corners: Sequence[Tuple[float, float]], robot_radius: float, 
 
 
 def collides(costs: np.ndarray, window: CostmapWindow, outline_xy: np.ndarray, pose: Pose2) -> bool:
-    """Whether the outline (M, 2) at ``pose`` touches an obstacle or leaves the costmap."""
+    """Check whether an outline touches an obstacle or leaves the costmap.
+
+    Args:
+        costs: uint8 (rows, cols).
+        window: Position of the cells.
+        outline_xy: (M, 2) points in the base frame [m].
+        pose: Pose of the base in the window's frame.
+    """
     cost = footprint_cost(
         costs, window.origin_x, window.origin_y, window.resolution, outline_xy, pose.x, pose.y, pose.yaw
     )
@@ -72,7 +86,14 @@ def collides(costs: np.ndarray, window: CostmapWindow, outline_xy: np.ndarray, p
 
 
 def contacts(costs: np.ndarray, window: CostmapWindow, outline_xy: np.ndarray, pose: Pose2) -> int:
-    """Count the points of the outline (M, 2) at ``pose`` that touch an obstacle or leave the costmap."""
+    """Count the points of an outline that touch an obstacle or leave the costmap.
+
+    Args:
+        costs: uint8 (rows, cols).
+        window: Position of the cells.
+        outline_xy: (M, 2) points in the base frame [m].
+        pose: Pose of the base in the window's frame.
+    """
     return count_contacts(
         costs, window.origin_x, window.origin_y, window.resolution, outline_xy, pose.x, pose.y, pose.yaw
     )
@@ -80,7 +101,21 @@ def contacts(costs: np.ndarray, window: CostmapWindow, outline_xy: np.ndarray, p
 
 @numba.njit(cache=True)
 def footprint_cost(costs, origin_x, origin_y, resolution, outline_xy, x, y, yaw):
-    """Kernel: highest cost under the outline and the robot's centre; COLLISION if the robot collides."""
+    """Compute the highest cost under the outline and the robot's centre.
+
+    Args:
+        costs: uint8 (rows, cols).
+        origin_x: Lower left corner of the cells [m].
+        origin_y: Lower left corner of the cells [m].
+        resolution: Cell size [m].
+        outline_xy: (M, 2) points in the base frame [m].
+        x: Robot position in the costmap's frame [m].
+        y: Robot position in the costmap's frame [m].
+        yaw: Heading of the robot [rad].
+
+    Returns:
+        Cost; COLLISION if the robot collides or leaves the costmap.
+    """
     rows, cols = costs.shape
     row = math.floor((y - origin_y) / resolution)
     col = math.floor((x - origin_x) / resolution)
@@ -105,7 +140,18 @@ def footprint_cost(costs, origin_x, origin_y, resolution, outline_xy, x, y, yaw)
 
 @numba.njit(cache=True)
 def count_contacts(costs, origin_x, origin_y, resolution, outline_xy, x, y, yaw):
-    """Kernel: number of colliding points of the outline, plus one if the centre collides."""
+    """Count the colliding points of the outline, plus one if the robot's centre collides.
+
+    Args:
+        costs: uint8 (rows, cols).
+        origin_x: Lower left corner of the cells [m].
+        origin_y: Lower left corner of the cells [m].
+        resolution: Cell size [m].
+        outline_xy: (M, 2) points in the base frame [m].
+        x: Robot position in the costmap's frame [m].
+        y: Robot position in the costmap's frame [m].
+        yaw: Heading of the robot [rad].
+    """
     rows, cols = costs.shape
     c, s = math.cos(yaw) / resolution, math.sin(yaw) / resolution
     base_col, base_row = (x - origin_x) / resolution, (y - origin_y) / resolution

@@ -31,14 +31,14 @@ from planar.deprecation import deprecated_names
 
 @dataclass(frozen=True)
 class LayerSettings:
-    """Parameters that every layer has."""
+    """Parameters of any layer; base class of the settings of a layer."""
 
     enabled: bool = parameter(True, "whether the layer adds costs", dynamic=True)
 
 
 @dataclass(frozen=True, eq=False)
 class LayerContext:
-    """What a layer is constructed for.
+    """Arguments for the construction of a layer.
 
     Attributes:
         window: Cells of the costmap; it moves if ``is_rolling``.
@@ -106,6 +106,9 @@ class Layer:
     def update(self, placement: CostmapPlacement) -> CellBounds:
         """Follow the window and integrate the stored observations.
 
+        Args:
+            placement: Position of the costmap and of the robot now.
+
         Returns:
             Block of cells whose costs may have changed.
         """
@@ -122,7 +125,11 @@ class Layer:
         raise NotImplementedError
 
     def clear_outside(self, bounds: CellBounds, window: CostmapWindow) -> CellBounds:
-        """Clear sensor data outside a block of cells.
+        """Clear sensor data outside of a block of cells.
+
+        Args:
+            bounds: Block of cells that keep their data.
+            window: Position of the cells.
 
         Returns:
             Block of cells whose costs may have changed.
@@ -132,17 +139,30 @@ class Layer:
     def clear_inside(self, bounds: CellBounds) -> CellBounds:
         """Clear sensor data inside a block of cells.
 
+        Args:
+            bounds: Block of cells to clear.
+
         Returns:
             Block of cells whose costs may have changed.
         """
         return NO_CELLS
 
     def take_over(self, before: "Layer") -> None:
-        """Copy the state of the layer that this one replaces; its window has the same size."""
+        """Copy the state of the layer that this one replaces.
+
+        Args:
+            before: Replaced layer of the same ``kind``; its window has the same size.
+        """
 
 
 def accept_note(layer: type) -> None:
-    """Use a class's ``note`` as ``add_observation`` if it has only that; emit a DeprecationWarning."""
+    """Use the deprecated method ``note`` of a class as ``add_observation`` if it has only that.
+
+    Emits a DeprecationWarning in this case.
+
+    Args:
+        layer: Class of a user-defined layer; modified.
+    """
     own = vars(layer)
     if "note" in own and "add_observation" not in own:
         warnings.warn(

@@ -10,7 +10,7 @@ from planar import Pose2, Scan
 
 @dataclass(frozen=True, eq=False)
 class Observation:
-    """Beams of a laser scan, or to the points of a point cloud.
+    """Beams of a laser scan, or beams to the points of a point cloud.
 
     A beam hits an obstacle if its range lies in [range_min, range_max).
 

@@ -20,11 +20,20 @@ class Polygon:
     corners_xy: np.ndarray
 
     def contains(self, x: float, y: float) -> bool:
-        """Whether a point lies inside."""
+        """Check whether a point lies inside.
+
+        Args:
+            x: Position in the polygon's frame [m].
+            y: Position in the polygon's frame [m].
+        """
         return bool(_contains(self.corners_xy, x, y))
 
     def in_frame(self, map_in_frame: Pose2) -> "Polygon":
-        """Transform a polygon from the map to another frame."""
+        """Transform the polygon from the map to another frame.
+
+        Args:
+            map_in_frame: Map in the other frame.
+        """
         return Polygon(map_in_frame.transform_points(self.corners_xy))
 
     def fill(self, costs: np.ndarray, window: CostmapWindow, cost: int) -> CellBounds:

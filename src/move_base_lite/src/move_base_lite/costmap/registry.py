@@ -18,9 +18,18 @@ from planar.plugins import PluginContract
 
 
 class GuardedLayer(Layer):
-    """Wraps a user-defined layer; what it raises becomes PluginFailed with its name."""
+    """Wraps a user-defined layer; an error in it becomes PluginFailed with its name."""
 
     def __init__(self, name: str, make: Callable[[], Layer]):
+        """Construct the wrapped layer.
+
+        Args:
+            name: Name of the plugin, for messages.
+            make: Constructs the layer.
+
+        Raises:
+            PluginFailed: Its constructor raised.
+        """
         self._guard = PluginGuard(name, make, PluginFailed)
         with self._guard.watch() as layer:
             self.reach_cells, self._kind = layer.reach_cells, layer.kind
@@ -56,7 +65,7 @@ class GuardedLayer(Layer):
 
 
 class LayerContract(PluginContract):
-    """The contract of layers; it accepts classes written before ``note`` became ``add_observation``."""
+    """Contract of layers; it accepts classes from before ``note`` was renamed to ``add_observation``."""
 
     def missing(self, found: Any) -> List[str]:
         if isinstance(found, type) and not issubclass(found, Layer):

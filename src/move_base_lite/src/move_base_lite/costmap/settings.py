@@ -16,11 +16,14 @@ from planar.config.settings import check
 class CostmapSettings:
     """Parameters of one costmap, with costmap_2d's names and defaults.
 
+    The fields without an entry below are parameters; their meaning, unit and bounds are in
+    ``parameter(...)``.
+
     Attributes:
-        static: Static layer.
-        obstacles: Obstacle layer.
-        plugin_layers: Further layers, applied below inflation.
-        inflation: Inflation layer.
+        static: Settings of the static layer.
+        obstacles: Settings of the obstacle layer.
+        plugin_layers: Settings of further layers, applied below inflation.
+        inflation: Settings of the inflation layer.
     """
 
     global_frame: str = parameter("map", "frame in which the costmap lies")

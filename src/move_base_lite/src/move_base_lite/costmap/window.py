@@ -8,7 +8,14 @@ from planar.deprecation import deprecated_names
 
 
 class CellBounds(NamedTuple):
-    """A block of cells: rows row_min..row_max-1, columns col_min..col_max-1."""
+    """A block of cells, empty if a maximum is not above its minimum.
+
+    Attributes:
+        row_min: First row.
+        row_max: Row after the last one.
+        col_min: First column.
+        col_max: Column after the last one.
+    """
 
     row_min: int
     row_max: int
@@ -25,7 +32,7 @@ NO_CELLS = CellBounds(0, 0, 0, 0)
 
 
 def union(a: CellBounds, b: CellBounds) -> CellBounds:
-    """Smallest block that contains both."""
+    """Compute the smallest block that contains two blocks."""
     if a.row_min >= a.row_max or a.col_min >= a.col_max:
         return b
     if b.row_min >= b.row_max or b.col_min >= b.col_max:
@@ -43,8 +50,8 @@ class CostmapWindow:
     """An axis-aligned grid of cells in the costmap's frame.
 
     Attributes:
-        rows: Cells along y.
-        cols: Cells along x.
+        rows: Number of cells along y.
+        cols: Number of cells along x.
         resolution: Cell size [m].
         origin_x: Lower left corner of cell (0, 0) [m].
         origin_y: Lower left corner of cell (0, 0) [m].
@@ -57,23 +64,38 @@ class CostmapWindow:
     origin_y: float = 0.0
 
     def cell_of(self, x: float, y: float) -> Tuple[int, int]:
-        """(row, col) of a point, which may be outside the window."""
+        """Compute row and column of a point, which may be outside of the window.
+
+        Args:
+            x: Position in the costmap's frame [m].
+            y: Position in the costmap's frame [m].
+        """
         return (
             math.floor((y - self.origin_y) / self.resolution),
             math.floor((x - self.origin_x) / self.resolution),
         )
 
     def contains(self, x: float, y: float) -> bool:
-        """Whether a point lies in the window."""
+        """Check whether a point lies in the window.
+
+        Args:
+            x: Position in the costmap's frame [m].
+            y: Position in the costmap's frame [m].
+        """
         row, col = self.cell_of(x, y)
         return 0 <= row < self.rows and 0 <= col < self.cols
 
     def has_same_size(self, other: "CostmapWindow") -> bool:
-        """Whether both have the same number of cells of the same size."""
+        """Check whether another window has the same number of cells of the same size."""
         return replace(self, origin_x=other.origin_x, origin_y=other.origin_y) == other
 
     def centred_on(self, x: float, y: float) -> "CostmapWindow":
-        """Move the window by whole cells so that it is centred on a point."""
+        """Move the window by whole cells so that it is centred on a point.
+
+        Args:
+            x: Position in the costmap's frame [m].
+            y: Position in the costmap's frame [m].
+        """
         row, col = self.cell_of(x - 0.5 * self.cols * self.resolution, y - 0.5 * self.rows * self.resolution)
         return replace(
             self,
@@ -82,13 +104,24 @@ class CostmapWindow:
         )
 
     def bounds_around(self, x: float, y: float, reach: float) -> CellBounds:
-        """Cells in a square around a point, cut to the window; ``reach`` is half its side [m]."""
+        """Compute the block of cells of a square around a point, cut to the window.
+
+        Args:
+            x: Position in the costmap's frame [m].
+            y: Position in the costmap's frame [m].
+            reach: Half the side of the square [m].
+        """
         row_min, col_min = self.cell_of(x - reach, y - reach)
         row_max, col_max = self.cell_of(x + reach, y + reach)
         return self.cut(CellBounds(row_min, row_max + 1, col_min, col_max + 1))
 
     def grown(self, bounds: CellBounds, cells: int) -> CellBounds:
-        """Grow a block by a number of cells on each side, cut to the window."""
+        """Grow a block on each side, cut to the window.
+
+        Args:
+            bounds: Block of cells.
+            cells: Number of rows and columns to add on each side.
+        """
         return self.cut(
             CellBounds(
                 bounds.row_min - cells, bounds.row_max + cells, bounds.col_min - cells, bounds.col_max + cells

@@ -28,13 +28,20 @@ class ScanSnapshot:
 
     Attributes:
         sensor_in_odom: Pose of the sensor.
-        stamp: Stamp of the scan [s].
-        segments: The segments of the scan.
+        stamp: Time of the scan [s].
+        segments: Segments of the scan.
         beams: (N,) indices of the beams that end within the range, by angle.
-        points_xy: (N, 2) where they end, in the odom frame [m].
+        points_xy: (N, 2) ends of these beams, in the odom frame [m].
     """
 
     def __init__(self, sensor_in_odom: Pose2, observation: Observation, max_range: float):
+        """Project the scan into the odom frame and segment it.
+
+        Args:
+            sensor_in_odom: Pose of the sensor at the scan.
+            observation: The scan.
+            max_range: Range within which beams are used [m].
+        """
         self.sensor_in_odom, self.stamp = sensor_in_odom, observation.stamp
         self.segments: List[ScanSegment] = []
         at, ranges = sensor_in_odom, np.asarray(observation.ranges, dtype=float)
@@ -44,7 +51,14 @@ class ScanSnapshot:
         )
 
     def free_share(self, points_xy: np.ndarray) -> float:
-        """Share of the points (N, 2) that lie in the free space of this scan."""
+        """Compute the share of points that lie in the free space of this scan.
+
+        Args:
+            points_xy: (N, 2), in the odom frame [m].
+
+        Returns:
+            Share, 0 to 1.
+        """
         at = self.sensor_in_odom
         return float(_share_free(points_xy, at.x, at.y, at.yaw, self._free))
 
@@ -54,8 +68,8 @@ class ScanSegment(NamedTuple):
 
     Attributes:
         points_xy: (N, 2) in the odom frame [m].
-        centre_xy: (2,), one radius behind the nearest point as seen from the sensor.
-        radius: Of the object [m].
+        centre_xy: (2,) centre of the object, one radius behind the nearest point as seen from the sensor [m].
+        radius: Radius of the object [m].
     """
 
     points_xy: np.ndarray
@@ -64,22 +78,26 @@ class ScanSegment(NamedTuple):
 
 
 def fitted_centre(points_xy: np.ndarray, expected_xy: np.ndarray, radius: float, prior: float) -> np.ndarray:
-    """Fit a circle of known radius to points, perhaps of one side of the object only.
+    """Fit a circle of known radius to points, which may be of one side of the object only.
 
     Args:
         points_xy: (N, 2) [m].
-        expected_xy: (2,) predicted centre.
-        radius: Of the circle [m].
+        expected_xy: (2,) predicted centre [m].
+        radius: Radius of the circle [m].
         prior: Weight of the prediction relative to one point.
 
     Returns:
-        The centre (2,) of the least-squares circle.
+        Centre (2,) of the least-squares circle [m].
     """
     return _fitted(points_xy, expected_xy, radius, prior)
 
 
 def segments_of(snapshot: ScanSnapshot) -> List[ScanSegment]:
-    """Segments of a snapshot; one may span the first and the last beam."""
+    """Segment a snapshot; one segment may span the first and the last beam.
+
+    Args:
+        snapshot: Points of a scan.
+    """
     if len(snapshot.points_xy) < MIN_SEGMENT_BEAMS:
         return []
     first, groups, centres = _groups(snapshot.points_xy, snapshot.sensor_in_odom.x, snapshot.sensor_in_odom.y)

@@ -27,15 +27,21 @@ class Track:
     """An object at constant velocity (Kalman filter; x and y share one covariance).
 
     Attributes:
-        is_moving: When the velocity was last known, the object moved: it was where the space was free before,
-            or it had travelled fast and far since it was first seen and entered free space. The latter
-            excludes static objects, whose segments seem to move as other objects occlude them.
-        is_static: When the velocity was last known, the object stood, and it had never moved.
-        seen_at: Stamp of the last matching segment [s].
-        moved_at: Stamp at which it last moved [s].
+        is_moving: Whether the object moved when the velocity was last known: either it was where the space
+            was free before, or it had travelled fast and far since it was first seen and entered free space.
+            The latter excludes static objects, whose segments seem to move as other objects occlude them.
+        is_static: Whether the object stood when the velocity was last known, and had never moved.
+        seen_at: Time of the last matching segment [s].
+        moved_at: Time at which it last moved [s].
     """
 
     def __init__(self, segment: ScanSegment, stamp: float):
+        """Start a track without velocity.
+
+        Args:
+            segment: First segment of the object.
+            stamp: Time of the scan [s].
+        """
         self._position, self._velocity = segment.centre_xy, np.zeros(2)
         self._covariance = np.diag([MEASUREMENT_SIGMA**2, INITIAL_VELOCITY_SIGMA**2])
         self._radius, self._stamp, self.seen_at = segment.radius, stamp, stamp
@@ -45,7 +51,11 @@ class Track:
         self._entered_free_space = False
 
     def predict(self, stamp: float) -> None:
-        """Predict the state at ``stamp``."""
+        """Predict the state at a time.
+
+        Args:
+            stamp: Time of the prediction [s].
+        """
         dt = stamp - self._stamp
         self._stamp = stamp
         self._position = self._position + dt * self._velocity
@@ -56,9 +66,11 @@ class Track:
         )
 
     def can_match(self, segment: ScanSegment, seen_since: float) -> bool:
-        """Whether the segment is within the gate and the track has no segment in this scan yet.
+        """Check whether a segment is within the gate and the track has no segment in this scan yet.
 
-        Tracks that were last seen before ``seen_since`` do not match.
+        Args:
+            segment: Segment of the present scan.
+            seen_since: Time before which a track without match is too old [s].
         """
         gate = GATE_SIGMAS * math.sqrt(self._covariance[0, 0]) + GATE_MARGIN
         is_unmatched = seen_since <= self.seen_at < self._stamp
@@ -69,8 +81,12 @@ class Track:
         return math.dist(self._position, segment.centre_xy)
 
     def is_alive(self, snapshot: ScanSnapshot, visible_age: float, occluded_age: float) -> bool:
-        """Whether the track has matched a segment within ``visible_age`` seconds, if the scan shows its place
-        free, else within ``occluded_age`` seconds.
+        """Check whether the track has matched a segment recently enough.
+
+        Args:
+            snapshot: The present scan.
+            visible_age: Largest time since the last match if the scan shows that its place is free [s].
+            occluded_age: Largest time since the last match otherwise [s].
         """
         is_free = snapshot.free_share(self._position[None, :]) > 0.0
         return snapshot.stamp - self.seen_at <= (visible_age if is_free else occluded_age)
@@ -79,9 +95,9 @@ class Track:
         """Correct the state with a matching segment.
 
         Args:
-            segment: The segment.
+            segment: Segment of the present scan.
             was_free: Whether it lies where the space was free in the reference scan.
-            was_free_recently: The same, or in a more recent scan.
+            was_free_recently: The same for the reference scan or a more recent one.
         """
         self._entered_free_space = self._entered_free_space or was_free_recently
         self._radius *= min(max(segment.radius / self._radius, MIN_RADIUS_RATIO), MAX_RADIUS_RATIO)
@@ -109,10 +125,21 @@ class Track:
             self.moved_at = self._stamp
 
     def covers(self, points_xy: np.ndarray) -> np.ndarray:
-        """Mask (N,) of the points (N, 2) on the object."""
+        """Find the points on the object.
+
+        Args:
+            points_xy: (N, 2), in the odom frame [m].
+
+        Returns:
+            (N,) booleans.
+        """
         return np.hypot(*(points_xy - self._position).T) < self._radius + COVER_MARGIN
 
     def state_at(self, now: float) -> Tuple[float, float, float, float, float]:
-        """Predicted x, y, vx, vy, radius [m, m/s]."""
+        """Predict x, y, vx, vy and radius in the odom frame [m, m/s].
+
+        Args:
+            now: Time of the prediction [s].
+        """
         x, y = self._position + (now - self._stamp) * self._velocity
         return (float(x), float(y), float(self._velocity[0]), float(self._velocity[1]), self._radius)

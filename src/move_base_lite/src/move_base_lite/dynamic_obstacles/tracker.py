@@ -36,7 +36,7 @@ class TrackerSettings(NamedTuple):
 
     Attributes:
         max_range: Range within which obstacles are tracked [m].
-        track_appearing: Also track objects that come into view from behind others.
+        track_appearing: Whether objects that come into view from behind others are tracked too.
     """
 
     max_range: float = 4.0
@@ -44,7 +44,10 @@ class TrackerSettings(NamedTuple):
 
 
 class DynamicObstacleTracker:
-    """Detects and tracks moving objects in laser scans, in the odom frame, as that is smooth."""
+    """Detects and tracks moving objects in laser scans.
+
+    It works in the odom frame, in which poses do not jump.
+    """
 
     def __init__(self) -> None:
         self._past: Deque[ScanSnapshot] = deque()
@@ -53,10 +56,10 @@ class DynamicObstacleTracker:
     def update(
         self, base_in_odom: Pose2, observation: Observation, settings: TrackerSettings = TrackerSettings()
     ) -> Observation:
-        """Process a scan. A scan older than the last one resets the tracker.
+        """Process a scan; one that is older than the last one resets the tracker.
 
         Args:
-            base_in_odom: Robot pose at the scan's stamp.
+            base_in_odom: Robot pose at the time of the scan.
             observation: The scan.
             settings: Settings of the tracker.
 

@@ -30,6 +30,13 @@ class NavigatorComponents:
     """
 
     def __init__(self, settings: NavigatorSettings, grid: Optional[OccupancyGrid], zones: Zones):
+        """Construct the components.
+
+        Args:
+            settings: Settings of the Navigator.
+            grid: Static map, if there is one.
+            zones: Keep-out and speed zones.
+        """
         self.settings, self.zones = settings, zones
         self.latency, self.active_command = 0.0, Twist2()
         self.planner = GLOBAL_PLANNERS.make(settings.planner)
@@ -37,7 +44,11 @@ class NavigatorComponents:
         self.reset_controller()
 
     def set_map(self, grid: Optional[OccupancyGrid]) -> None:
-        """Start with another map and without observations."""
+        """Replace the static map; observations are dropped.
+
+        Args:
+            grid: Static map; None for none.
+        """
         self.costmaps = Costmaps(self.settings, grid, self.zones)
         self._obstacle_tracker = DynamicObstacleTracker()
 
@@ -61,7 +72,12 @@ class NavigatorComponents:
         return 1.0 / self.settings.move_base.controller_frequency
 
     def update_costmaps(self, state: RobotState, observations: Sequence[Observation]) -> None:
-        """Add observations to the costmaps; those of moving obstacles only to the local one."""
+        """Update both costmaps; observations of moving obstacles are added to the local one only.
+
+        Args:
+            state: Robot state at this control tick.
+            observations: Sensor data since the last tick.
+        """
         static = [self._without_moving(state.base_in_odom, observation) for observation in observations]
         self.costmaps.update(state, observations, static)
 
@@ -81,10 +97,10 @@ class NavigatorComponents:
             tolerance: Distance from the goal at which the path may end [m].
 
         Returns:
-            Points of the path, (N, 2), in the map [m].
+            Points of the path (N, 2), in the map frame [m].
 
         Raises:
-            PlanningError: If there is no path.
+            PlanningError: There is no path.
         """
         costmap = self.costmaps.global_costmap
         start_xy: Tuple[float, float] = (start_in_map.x, start_in_map.y)
@@ -93,7 +109,11 @@ class NavigatorComponents:
         )
 
     def control_context(self, state: RobotState) -> ControlContext:
-        """Predict what the local planner will find when its command takes effect."""
+        """Predict the inputs of the local planner for the time at which its command takes effect.
+
+        Args:
+            state: Robot state at this control tick.
+        """
         controller = self.settings.controller
         acceleration = Twist2(controller.acc_lim_x, controller.acc_lim_theta)
         moved, twist = predict_motion(state.twist, self.active_command, self.latency, acceleration)

@@ -22,6 +22,13 @@ class Costmaps:
     """
 
     def __init__(self, settings: NavigatorSettings, grid: Optional[OccupancyGrid], zones: Zones):
+        """Create the costmaps without observations.
+
+        Args:
+            settings: Settings of both costmaps.
+            grid: Static map, if there is one.
+            zones: Keep-out zones to apply.
+        """
         self._settings = settings
         self._zones = zones
         self._applied_zones: Tuple[List[NavigationZone], List[NavigationZone]] = ([], [])
@@ -75,7 +82,11 @@ class Costmaps:
         return self._last_stamps.get(topic, -math.inf)
 
     def stale_source(self, now: float) -> Optional[str]:
-        """Topic of a sensor whose data exceed its expected_update_rate; None if there is none."""
+        """Return the topic of a sensor whose data exceed its ``expected_update_rate``; None if there is none.
+
+        Args:
+            now: Time [s].
+        """
         for costmap in (self._settings.local_costmap, self._settings.global_costmap):
             for source in costmap.obstacles.sources if costmap.obstacles.enabled else ():
                 if 0.0 < source.expected_update_rate < now - self.last_stamp(source.topic):
@@ -85,9 +96,12 @@ class Costmaps:
     def check_goal(self, goal: Pose2) -> None:
         """Reject a goal that no recovery behaviour can make reachable.
 
+        Args:
+            goal: Goal pose in the map frame.
+
         Raises:
-            OutOfMap: If the goal is outside the map.
-            GoalBlocked: If it is in a keep-out zone, an obstacle of the map, or unknown space.
+            OutOfMap: The goal is outside of the map.
+            GoalBlocked: It is in a keep-out zone, an obstacle of the map, or unknown space.
         """
         costmap, where = self.global_costmap, f"the goal at ({goal.x:.2f}, {goal.y:.2f})"
         if not costmap.window.contains(goal.x, goal.y):

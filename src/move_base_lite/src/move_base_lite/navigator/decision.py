@@ -24,11 +24,12 @@ class Status(Enum):
 
     @property
     def is_final(self) -> bool:
+        """Whether the goal has ended."""
         return self in (Status.SUCCEEDED, Status.ABORTED, Status.CANCELLED)
 
 
 class RecoveryTrigger(Enum):
-    """What made recovery necessary; the value is move_base's abort text for it."""
+    """Failure that made recovery necessary; the value is move_base's abort text for it."""
 
     PLANNING = "Failed to find a valid plan. Even after executing recovery behaviors."
     CONTROLLING = "Failed to find a valid control. Even after executing recovery behaviors."
@@ -40,7 +41,12 @@ STALE_SENSOR_TEXT = "Sensor data is out of date, we're not going to allow comman
 
 
 def with_reason(text: str, error: NavigationError) -> str:
-    """Append the reason to move_base's text, which clients match and which does not contain it."""
+    """Append the reason to move_base's text, which clients match and which does not contain it.
+
+    Args:
+        text: move_base's text.
+        error: Reason of the failure.
+    """
     return f"{text} [code={error.code}: {error}]"
 
 
@@ -55,9 +61,9 @@ class GoalProgress:
     Attributes:
         seconds: Time since the goal was accepted [s].
         travelled: Distance travelled since then [m].
-        recoveries: Recovery behaviours used.
+        recoveries: Number of recovery behaviours used.
         distance_left: Length of the path that remains [m].
-        seconds_left: Estimate of the remaining time from the average speed [s].
+        seconds_left: Estimate of the remaining time, from the average speed [s].
     """
 
     seconds: float
@@ -69,7 +75,7 @@ class GoalProgress:
 
 @dataclass(frozen=True)
 class GoalOutcome:
-    """How a goal ended.
+    """Outcome of a goal.
 
     Attributes:
         code: Outcome code of move_base_flex (mbf_msgs/MoveBaseResult).
@@ -77,7 +83,7 @@ class GoalOutcome:
         text: Text of the action's result.
         distance_to_goal: Distance of the robot from the goal at the end [m].
         angle_to_goal: Difference of headings at the end [rad].
-        recoveries: Recovery behaviours used.
+        recoveries: Number of recovery behaviours used.
         seconds: Time since the goal was accepted [s].
     """
 

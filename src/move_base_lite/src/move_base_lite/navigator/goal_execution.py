@@ -35,9 +35,9 @@ class RobotState:
     twist: Twist2
 
     def distance_to(self, other: "RobotState") -> float:
-        """Distance on which localization and odometry agree [m].
+        """Compute the distance on which localization and odometry agree [m].
 
-        The smaller of both: neither a jump of localization nor spinning wheels count as motion.
+        It is the smaller of both: neither a jump of localization nor spinning wheels count as motion.
         """
         return min(
             self.base_in_map.distance_to(other.base_in_map), self.base_in_odom.distance_to(other.base_in_odom)
@@ -128,14 +128,19 @@ class GoalExecution:
             self.on_resolved(RecoveryTrigger.OSCILLATION)
 
     def limit_speed(self, limit: SpeedLimit, base_in_odom: Pose2) -> None:
-        """Apply the speed limit of a recovery behaviour from this pose on."""
+        """Apply the speed limit of a recovery behaviour.
+
+        Args:
+            limit: Speed limit.
+            base_in_odom: Robot pose in the odometry frame, from which on the limit's distance counts.
+        """
         self.speed_limit = (limit, base_in_odom)
 
     def max_speed(self, base_in_odom: Pose2, zone_speed: float) -> Twist2:
-        """Highest speeds allowed by zones and by a recovery behaviour.
+        """Compute the highest speeds allowed by zones and by a recovery behaviour.
 
         Args:
-            base_in_odom: Robot in the odometry frame.
+            base_in_odom: Robot pose in the odometry frame.
             zone_speed: Highest speed in the zones at the robot's position [m/s].
         """
         if self.speed_limit is not None:
@@ -146,7 +151,12 @@ class GoalExecution:
         return Twist2(zone_speed, math.inf)
 
     def on_planning_failed(self, error: PlanningError, now: float) -> None:
-        """Record that planning failed; a plan that is being followed stays in use."""
+        """Record that planning failed; a plan that is being followed stays in use.
+
+        Args:
+            error: Reason of the failure.
+            now: Time [s].
+        """
         if self.failed_plans == 0 and self.status is Status.CONTROLLING:
             self.planning_since = now
         self.failed_plans += 1
@@ -154,7 +164,12 @@ class GoalExecution:
         self.path_xy = np.empty((0, 2))
 
     def needs_planning_recovery(self, now: float, patience: float) -> bool:
-        """Whether the plan in use makes no progress, or planning has failed for ``patience`` seconds."""
+        """Check whether the plan in use makes no progress, or planning has failed for too long.
+
+        Args:
+            now: Time [s].
+            patience: Time without a plan until recovery [s] (move_base: ~planner_patience).
+        """
         if self.progress_checker.budget_exceeded(self.travelled):
             return True
         return self.failed_plans > 0 and now - max(self.planning_since, self.progress_stamp) > patience
@@ -166,13 +181,23 @@ class GoalExecution:
         self.on_resolved(RecoveryTrigger.PLANNING)
 
     def on_control_succeeded(self, remaining: float) -> None:
-        """Record that there is a velocity along a plan with ``remaining`` metres to go."""
+        """Record that there is a velocity along the plan.
+
+        Args:
+            remaining: Length of the path that remains [m].
+        """
         self.progress_checker.on_control_succeeded(self.travelled, remaining)
         self.control_fails_since = None
         self.on_resolved(RecoveryTrigger.CONTROLLING)
 
     def on_control_failed(self, error: ControlError, now: float, patience: float) -> None:
-        """Record that there is no velocity: plan again, or start recovery after ``patience`` seconds."""
+        """Record that there is no velocity along the plan: plan again, or start recovery.
+
+        Args:
+            error: Reason of the failure.
+            now: Time [s].
+            patience: Time without a velocity until recovery [s] (move_base: ~controller_patience).
+        """
         self.error = error
         if self.control_fails_since is None:
             self.control_fails_since = now
@@ -182,7 +207,11 @@ class GoalExecution:
             self.replan(now)
 
     def on_resolved(self, trigger: RecoveryTrigger) -> None:
-        """Restart the list of recovery behaviours if ``trigger`` was the reason of the latest recovery."""
+        """Restart the list of recovery behaviours if a trigger was the reason of the latest recovery.
+
+        Args:
+            trigger: Failure that is resolved.
+        """
         if self.trigger is trigger:
             self.recovery_index = self.progress_checker.behaviors_tried
 
@@ -220,7 +249,7 @@ class GoalExecution:
         self.progress_stamp, self.commanded_motion, self.measured_motion = now, 0.0, 0.0
 
     def progress(self, now: float, remaining: float, nominal_speed: float) -> GoalProgress:
-        """Progress so far, and an estimate of what remains.
+        """Compute progress so far, and an estimate of what remains.
 
         Args:
             now: Time [s].
@@ -232,7 +261,14 @@ class GoalExecution:
         return GoalProgress(seconds, self.travelled, self.recoveries_used, remaining, remaining / speed)
 
     def outcome(self, now: float, code: int, reason: str, text: str) -> GoalOutcome:
-        """Outcome of the goal, with the robot's distance to it."""
+        """Create the outcome of the goal, with the robot's distance to it.
+
+        Args:
+            now: Time [s].
+            code: Outcome code of move_base_flex (mbf_msgs/MoveBaseResult).
+            reason: The outcome as a word, such as NO_PATH.
+            text: Text of the action's result.
+        """
         return GoalOutcome(
             code,
             reason,

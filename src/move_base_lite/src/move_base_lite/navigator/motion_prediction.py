@@ -16,10 +16,10 @@ def predict_motion(
         twist: Present velocity.
         active_command: Velocity command that the robot follows until then.
         seconds: Time until then [s].
-        acceleration: Limits of acceleration, m/s^2 and rad/s^2.
+        acceleration: Limits of acceleration [m/s^2, rad/s^2].
 
     Returns:
-        The predicted pose in the present base frame, and the velocity there.
+        Predicted pose in the present base frame, and velocity at that pose.
     """
     moved, dt = Pose2(), seconds / STEPS
     for _ in range(STEPS if seconds > 0.0 else 0):

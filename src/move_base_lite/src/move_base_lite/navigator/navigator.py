@@ -31,8 +31,9 @@ from planar.geometry.pose import check_pose
 class Navigator:
     """Drives a differential-drive robot to one goal at a time without collisions.
 
-    Call :meth:`tick` once a control period. Plans on the global costmap, follows the plan on the local
-    costmap and runs the recovery behaviours in order when either fails, as move_base does (state_machine.py).
+    Call :meth:`tick` once a control period. The Navigator plans on the global costmap, follows the plan on
+    the local costmap and runs the recovery behaviours in order when either fails, as move_base does
+    (``state_machine.py``).
 
     Args:
         settings: Parameters of move_base, its costmaps, planners and recovery behaviours.
@@ -62,15 +63,15 @@ class Navigator:
 
         Args:
             now: Time [s].
-            base_in_map: Robot in the map, from localization.
-            base_in_odom: Robot in the odometry frame.
+            base_in_map: Robot pose in the map frame, from localization.
+            base_in_odom: Robot pose in the odometry frame.
             twist: Velocity from odometry.
-            scan: New scan, as seen from the present pose; None if there is none.
-            observations: New data of other sensors, as seen from the present pose.
+            scan: New scan, transformed to the present pose; None if there is none.
+            observations: New data of other sensors, transformed to the present pose.
             latency: Time until the command takes effect [s].
 
         Returns:
-            The velocity command for the coming period, and the state of the goal.
+            Velocity command for the coming period, and state of the goal.
         """
         self._components.latency = latency
         if scan is not None:
@@ -119,14 +120,24 @@ class Navigator:
     def set_goal(self, goal_in_map: Pose2) -> None:
         """Set the goal, from the next tick on; it preempts a goal in progress without stopping.
 
+        Args:
+            goal_in_map: Goal pose in the map frame.
+
         Raises:
-            OutOfRangeError: If the coordinates are too large.
+            OutOfRangeError: The coordinates are too large.
         """
         check_pose(goal_in_map, "a goal")
         self._new_goal = goal_in_map
 
     def cancel(self, now: float) -> Decision:
-        """Cancel the goal, if there is one; the decision stops the robot."""
+        """Cancel the goal, if there is one.
+
+        Args:
+            now: Time [s].
+
+        Returns:
+            Decision that stops the robot.
+        """
         if not self.is_active:
             return Decision(Status.IDLE)
         return self._end(Status.CANCELLED, "", self._outcome(now, CANCELLED_OUTCOME, "CANCELLED", ""))
@@ -142,12 +153,20 @@ class Navigator:
         self.clear_goal()
 
     def set_map(self, grid: Optional[OccupancyGrid]) -> None:
-        """Replace the static map; observations are dropped."""
+        """Replace the static map; observations are dropped.
+
+        Args:
+            grid: Static map; None for none.
+        """
         self._grid = grid
         self._components.set_map(grid)
 
     def update_settings(self, settings: NavigatorSettings) -> None:
-        """Apply other settings; goal and plan stay."""
+        """Apply other settings; goal and plan stay.
+
+        Args:
+            settings: Parameters of move_base, its costmaps, planners and recovery behaviours.
+        """
         self._components.update_settings(settings)
 
     @property
@@ -179,16 +198,16 @@ class Navigator:
         """Plan a path between two poses without driving.
 
         Args:
-            start_in_map: Start.
-            goal_in_map: Goal.
+            start_in_map: Start pose in the map frame; its heading does not matter.
+            goal_in_map: Goal pose in the map frame; its heading does not matter.
             tolerance: Distance from the goal at which the path may end [m].
 
         Returns:
-            Points of the path, (N, 2), in the map [m].
+            Points of the path (N, 2), in the map frame [m].
 
         Raises:
-            PlanningError: If there is no path.
-            OutOfRangeError: If the coordinates are too large.
+            PlanningError: There is no path.
+            OutOfRangeError: The coordinates are too large.
         """
         check_pose(start_in_map, "a start")
         check_pose(goal_in_map, "a goal")
@@ -199,7 +218,11 @@ class Navigator:
         self._components.costmaps.clear()
 
     def clear_around(self, base_in_map: Pose2) -> None:
-        """Clear the obstacles of the global costmap at the robot's position, within ~clearing_radius."""
+        """Clear the obstacles of the global costmap at the robot's position, within ``~clearing_radius``.
+
+        Args:
+            base_in_map: Robot pose in the map frame.
+        """
         radius = self.settings.move_base.clearing_radius
         self.global_costmap.clear_around(
             base_in_map, 2.0 * (radius or self.global_costmap.footprint.circumscribed_radius)

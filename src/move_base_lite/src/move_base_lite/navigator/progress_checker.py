@@ -34,7 +34,11 @@ class RecoveryProgressChecker:
     travel_limit: float = math.inf
 
     def budget_exceeded(self, travelled: float) -> bool:
-        """Whether the robot has travelled so far that the current plan should have made progress."""
+        """Check whether the robot has travelled so far that the current plan should have made progress.
+
+        Args:
+            travelled: Distance travelled since the goal was accepted [m].
+        """
         return travelled > self.travel_limit
 
     def on_planning_failed(self) -> None:
@@ -42,7 +46,11 @@ class RecoveryProgressChecker:
         self.remaining_at_failure, self.travel_limit = self.min_remaining, math.inf
 
     def on_behavior_finished(self, behaviors_tried: int) -> None:
-        """Record that a recovery behaviour has ended; a plan found now has to make progress."""
+        """Record that a recovery behaviour has ended; a plan found now has to make progress.
+
+        Args:
+            behaviors_tried: Number of recovery behaviours that led only to such plans.
+        """
         self.behaviors_tried, self.travel_limit = behaviors_tried, math.inf
 
     def on_control_succeeded(self, travelled: float, remaining: float) -> None:

@@ -49,6 +49,12 @@ class GoalAborted(Exception):  # noqa: N818
     """
 
     def __init__(self, text: str, reason: NavigationError):
+        """Create the exception.
+
+        Args:
+            text: move_base's text.
+            reason: Why the goal was aborted.
+        """
         super().__init__(text)
         self.text, self.reason = text, reason
 
@@ -56,9 +62,17 @@ class GoalAborted(Exception):  # noqa: N818
 def step(execution: GoalExecution, state: RobotState, components: NavigatorComponents) -> Decision:
     """Run one control period.
 
+    Args:
+        execution: State of the goal; modified.
+        state: Robot state at this control tick.
+        components: Planners and costmaps.
+
+    Returns:
+        Decision for this period.
+
     Raises:
-        GoalSucceeded: If the robot stands at the goal.
-        GoalAborted: If sensor data stay away, or all recovery behaviours have been tried.
+        GoalSucceeded: The robot stands at the goal.
+        GoalAborted: A sensor sends no data, or all recovery behaviours have been tried.
     """
     topic = components.costmaps.stale_source(state.stamp)
     if topic is not None:

@@ -33,39 +33,71 @@ class NavigationZone:
 
     @property
     def polygon(self) -> Polygon:
+        """Polygon of the corners, in the map frame."""
         return Polygon(np.array(self.corners))
 
     def contains(self, x: float, y: float) -> bool:
-        """Whether a point of the map lies in the polygon (even-odd rule)."""
+        """Check whether a point lies in the polygon (even-odd rule).
+
+        Args:
+            x: Position in the map frame [m].
+            y: Position in the map frame [m].
+        """
         return self.polygon.contains(x, y)
 
 
 class Zones:
-    """All zones, each of which can be switched on and off."""
+    """All zones, each of which can be switched on and off.
+
+    Attributes:
+        all: All zones, whether they are on or off.
+    """
 
     def __init__(self, zones: Sequence[NavigationZone] = ()):
         self.all = tuple(zones)
         self._enabled = {zone.name for zone in zones if zone.enabled}
 
     def is_enabled(self, name: str) -> bool:
+        """Check whether a zone is on."""
         return name in self._enabled
 
     def enable(self, name: str, is_on: bool) -> None:
-        """Switch a zone on or off."""
+        """Switch a zone on or off.
+
+        Args:
+            name: Name of the zone.
+            is_on: Whether it is on from now.
+        """
         (self._enabled.add if is_on else self._enabled.discard)(name)
 
     def split_keep_out(self, base_in_map: Pose2) -> Tuple[List[NavigationZone], List[NavigationZone]]:
-        """Return the keep-out zones that block the robot, and those that it is in and has to leave."""
+        """Split the active keep-out zones by whether the robot is inside.
+
+        Args:
+            base_in_map: Robot pose in the map frame.
+
+        Returns:
+            Zones that block the robot, and zones that it is in and has to leave.
+        """
         active = self._active(KEEP_OUT)
         inside = [zone for zone in active if zone.contains(base_in_map.x, base_in_map.y)]
         return [zone for zone in active if zone not in inside], inside
 
     def keep_out_at(self, x: float, y: float) -> List[NavigationZone]:
-        """Return the keep-out zones that contain a point of the map."""
+        """Return the active keep-out zones that contain a point.
+
+        Args:
+            x: Position in the map frame [m].
+            y: Position in the map frame [m].
+        """
         return [zone for zone in self._active(KEEP_OUT) if zone.contains(x, y)]
 
     def max_speed(self, base_in_map: Pose2) -> float:
-        """Highest speed allowed at the robot's position [m/s]; inf outside speed zones."""
+        """Return the highest speed allowed at the robot's position [m/s]; inf outside of speed zones.
+
+        Args:
+            base_in_map: Robot pose in the map frame.
+        """
         here = (zone for zone in self._active(SPEED) if zone.contains(base_in_map.x, base_in_map.y))
         return min((zone.max_speed for zone in here), default=math.inf)
 
@@ -79,8 +111,11 @@ def load_zones(path) -> Zones:
     An entry is ``name: {kind: keep_out, corners: [[x, y], ...]}``. A zone that is off at start-up has
     ``enabled: false``; one of kind ``speed`` has ``max_speed`` [m/s].
 
+    Args:
+        path: YAML file.
+
     Raises:
-        SettingsError: With file, line and key, if the file is invalid.
+        SettingsError: The file is invalid; the text states file, line and key.
     """
     table = read_table(path)
     return Zones([_zone(name, table.table(name)) for name in table])

@@ -23,11 +23,11 @@ def load_settings(*paths: Union[str, Path], **chosen: Any) -> NavigatorSettings:
     """Read settings from YAML files of official parameters.
 
     Args:
-        paths: Files; later ones override earlier ones, as with ``rosparam load``.
+        paths: YAML files; later ones override earlier ones, as with ``rosparam load``.
         chosen: Parameters of move_base that override those of all files.
 
     Raises:
-        SettingsError: If a file cannot be read or a value is invalid.
+        SettingsError: A file cannot be read or a value is invalid.
     """
     parameters: Dict[str, Any] = {}
     for path in paths:
@@ -59,7 +59,7 @@ def settings_from_parameters(
         The settings, and warnings about unknown, deprecated or ignored parameters.
 
     Raises:
-        SettingsError: With the full name of the parameter, if a value is invalid.
+        SettingsError: A value is invalid; the text states the full name of the parameter.
     """
     reader = ParameterReader(where, is_lenient)
     move_base = reader.read(MoveBaseSettings, parameters, "", _MOVE_BASE_IGNORED)

@@ -23,7 +23,17 @@ _COSTMAP_IGNORED = {
 
 
 def costmap_settings(reader: ParameterReader, values: Tree, name: str, parameters: Tree) -> CostmapSettings:
-    """Read the settings of one costmap and its layers."""
+    """Read the settings of one costmap and its layers.
+
+    Args:
+        reader: Reads the values and collects warnings.
+        values: Parameters of the costmap.
+        name: Namespace of the costmap.
+        parameters: Parameters of move_base, from which frames and the like are inherited.
+
+    Raises:
+        SettingsError: A value is invalid.
+    """
     values = with_plugin_list(values, f"{reader.where}{name}/")
     for inherited in INHERITED:
         if inherited in parameters:
@@ -61,7 +71,7 @@ def with_plugin_list(values: Mapping[str, Any], where: str) -> Dict[str, Any]:
         where: Prefix of parameter names in messages.
 
     Raises:
-        SettingsError: If the parameters of a layer are not a table.
+        SettingsError: The parameters of a layer are not a table.
     """
     if "plugins" in values:
         return dict(values)
@@ -91,7 +101,19 @@ def _keys_of(kind: Plugin[Layer]) -> Set[str]:
 
 
 def layer_plugins(reader: ParameterReader, values: Tree, name: str) -> Dict[str, Plugin[Layer]]:
-    """Return the plugin of each layer by its name, in order; unknown types are skipped with a warning."""
+    """Find the plugins of a costmap's layers; unknown types are skipped with a warning.
+
+    Args:
+        reader: Finds the plugins and collects warnings.
+        values: Parameters of the costmap, with ``plugins``.
+        name: Namespace of the costmap.
+
+    Returns:
+        Plugin by the name of the layer, in order.
+
+    Raises:
+        SettingsError: ``plugins`` is not a list of names and types.
+    """
     layers = {}
     plugins = values["plugins"]
     for plugin in plugins if isinstance(plugins, list) else [plugins]:
@@ -134,8 +156,11 @@ def parse_footprint(value: Any, name: str) -> Tuple[Tuple[float, float], ...]:
         value: Value of the parameter.
         name: Full name of the parameter, for messages.
 
+    Returns:
+        Corners (x, y) in the base frame [m].
+
     Raises:
-        SettingsError: If the value is not a list of points.
+        SettingsError: The value is not a list of points.
     """
     try:
         points = yaml.safe_load(value) if isinstance(value, str) else value

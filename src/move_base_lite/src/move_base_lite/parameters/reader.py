@@ -20,6 +20,9 @@ class ParameterReader:
     Args:
         where: Prefix of parameter names in messages.
         is_lenient: Whether a value of a wrong type is ignored with a warning instead of refused.
+
+    Attributes:
+        warnings: Warnings so far.
     """
 
     def __init__(self, where: str, is_lenient: bool = False):
@@ -28,7 +31,17 @@ class ParameterReader:
         self._on_invalid = self._ignore_value if is_lenient else None
 
     def read(self, kind: Type[T], values: Tree, prefix: str, ignore: Iterable[str] = ()) -> T:
-        """Read settings of type ``kind`` from the values that are not dictionaries themselves."""
+        """Read settings from the values that are not dictionaries themselves.
+
+        Args:
+            kind: Dataclass of the settings.
+            values: Parameters by name.
+            prefix: Namespace of the parameters, for messages.
+            ignore: Names of parameters that have no effect and cause no warning.
+
+        Raises:
+            SettingsError: A value is invalid.
+        """
         flat = {
             name: value
             for name, value in values.items()
@@ -44,7 +57,16 @@ class ParameterReader:
         return settings
 
     def read_plugin(self, plugin: Plugin, values: Tree, prefix: str) -> Any:
-        """Read the settings of a plugin, also from deprecated names, synonyms and old forms of values."""
+        """Read the settings of a plugin, also from deprecated names, synonyms and old forms of values.
+
+        Args:
+            plugin: The plugin.
+            values: Parameters by name.
+            prefix: Namespace of the parameters, for messages.
+
+        Raises:
+            SettingsError: A value is invalid.
+        """
         present = dict(values)
         for old, new in plugin.deprecated.items():
             if old in present:
@@ -56,7 +78,17 @@ class ParameterReader:
     def find(
         self, registry: Registry[T], name: str, key: str, is_package_needed: bool = True
     ) -> Optional[Plugin[T]]:
-        """Find the plugin that the parameter ``key`` selects; see Registry.find."""
+        """Find the plugin that a parameter selects (see Registry.find).
+
+        Args:
+            registry: Plugins to select from.
+            name: Value of the parameter.
+            key: Name of the parameter, for messages.
+            is_package_needed: Whether the package of an official name must be given.
+
+        Raises:
+            PluginError: A user-defined class cannot be loaded or does not fulfil the contract.
+        """
         try:
             return registry.find(name, is_package_needed)
         except PluginError as error:
@@ -66,7 +98,13 @@ class ParameterReader:
         self.warnings.append(f"{message}: it counts as not set")
 
     def report_unknown(self, names: Iterable[str], prefix: str, known: Iterable[str]) -> None:
-        """Add a warning for each name, with the known name it resembles."""
+        """Add a warning for each unknown parameter, with the known name it resembles.
+
+        Args:
+            names: Names of unknown parameters.
+            prefix: Namespace of the parameters, for messages.
+            known: Names of known parameters.
+        """
         known = list(known)
         for name in names:
             if name == LEFT_BY_RECONFIGURE:
@@ -81,7 +119,12 @@ def subtree(parameters: Tree, name: str) -> Tree:
 
 
 def renamed(values: Tree, names: Mapping[str, str]) -> Dict[str, Any]:
-    """Replace names of parameters by others."""
+    """Rename parameters.
+
+    Args:
+        values: Parameters by name.
+        names: New names by old ones.
+    """
     return {names.get(name, name): value for name, value in values.items()}
 
 

@@ -18,7 +18,14 @@ _INHERITED = (*INHERITED, "latch_xy_goal_tolerance")
 
 
 def reconfigure_servers(parameters: Tree) -> Dict[str, List[Tuple[DynamicParameter, Any]]]:
-    """Return the parameters of each dynamic_reconfigure server with their present values, by namespace."""
+    """Collect the parameters of each dynamic_reconfigure server.
+
+    Args:
+        parameters: Parameters of move_base, a nested dictionary.
+
+    Returns:
+        Parameters with their present values, by the namespace of the server.
+    """
     planner_choices = [
         DynamicParameter(key, registry.names[0], key.replace("_", " ")[5:])
         for key, registry in PLANNERS.items()
@@ -38,7 +45,13 @@ def reconfigure_servers(parameters: Tree) -> Dict[str, List[Tuple[DynamicParamet
 
 
 def with_changes(parameters: Tree, namespace: str, values: Tree) -> Dict[str, Any]:
-    """Return the parameters with other values in a namespace below move_base."""
+    """Return the parameters with other values in a namespace.
+
+    Args:
+        parameters: Parameters of move_base, a nested dictionary.
+        namespace: Namespace below move_base.
+        values: New values by name.
+    """
     name, _, rest = namespace.partition("/")
     if not name:
         return {**parameters, **values}

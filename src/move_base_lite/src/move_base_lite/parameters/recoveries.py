@@ -16,7 +16,17 @@ from planar import SettingsError
 def recovery_settings(
     reader: ParameterReader, parameters: Tree, move_base: MoveBaseSettings, local: CostmapSettings
 ) -> Tuple[NamedRecovery, ...]:
-    """Read the list of recovery behaviours with their settings."""
+    """Read the list of recovery behaviours with their settings.
+
+    Args:
+        reader: Reads the values and collects warnings.
+        parameters: Parameters of move_base.
+        move_base: Settings of move_base, for the default behaviours.
+        local: Settings of the local costmap, whose footprint determines the size of ``aggressive_reset``.
+
+    Raises:
+        SettingsError: A value is invalid.
+    """
     footprint = footprint_from(local.footprint, local.robot_radius, local.footprint_padding)
     distances = {
         "conservative_reset": move_base.conservative_reset_dist,

@@ -24,7 +24,7 @@ ORIENTATIONS = (
 
 @dataclass(frozen=True)
 class PlannerSettings:
-    """Settings of any global planner."""
+    """Settings of any global planner; base class of their settings."""
 
     allow_unknown: bool = parameter(True, "plans may cross unknown cells")
     default_tolerance: float = parameter(
@@ -79,7 +79,7 @@ class GlobalPlanner(Protocol):
         goal_xy: Tuple[float, float],
         tolerance: float = 0.0,
     ) -> np.ndarray:
-        """Plan a path that crosses no cell from INSCRIBED on, except to leave one.
+        """Plan a path that enters no cell with a cost of INSCRIBED or more, except to leave an obstacle.
 
         Args:
             costs: (rows, cols), uint8, values as in ``costmap/costs.py``; must not be modified.
@@ -96,6 +96,6 @@ class GlobalPlanner(Protocol):
             OutOfMap: Start or goal is outside of the window.
             StartBlocked: The start is blocked.
             GoalBlocked: The goal is blocked.
-            NoPath: Nothing connects start and goal. The texts of all four name the position.
+            NoPath: No path connects start and goal. The texts of all four state the position.
         """
         ...

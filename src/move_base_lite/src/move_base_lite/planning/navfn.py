@@ -50,7 +50,7 @@ class NavfnSettings(PlannerSettings):
 
 @dataclass(frozen=True)
 class GlobalPlannerSettings(NavfnSettings):
-    """The same with global_planner's names, defaults and dynamic parameters."""
+    """Parameters of global_planner, with its names, defaults and dynamic parameters."""
 
     lethal_cost: int = parameter(
         253,
@@ -87,7 +87,10 @@ class Navfn:
         goal_xy: Tuple[float, float],
         tolerance: float = 0.0,
     ) -> np.ndarray:
-        """See GlobalPlanner.plan; a blocked end is replaced by a cell connected to the other, if possible."""
+        """Plan a path (see GlobalPlanner.plan).
+
+        A blocked start or goal is replaced by a cell that is connected to the other one, if possible.
+        """
         settings = self._settings
         traversal = traversal_costs(
             costs, settings.allow_unknown, settings.neutral_cost, settings.cost_factor, settings.lethal_cost

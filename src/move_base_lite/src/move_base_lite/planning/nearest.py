@@ -15,8 +15,8 @@ def passable_ends(
 ) -> Tuple[Optional[Cell], Optional[Cell]]:
     """Replace start and goal by the nearest passable cells.
 
-    A replacement is preferred that is connected to the other end: the nearest cell may be enclosed, as the
-    inside of a cupboard is.
+    Replacements that are connected to the other end are preferred: the nearest cell may be enclosed, for
+    example inside a cupboard.
 
     Args:
         traversal: (rows, cols) traversal costs.
@@ -26,7 +26,7 @@ def passable_ends(
         goal_reach: Maximum distance of a replaced goal [cells].
 
     Returns:
-        Start and goal, None for one without a passable cell within reach.
+        Start and goal, each None if there is no passable cell within reach.
     """
     passable = traversal < IMPASSABLE
     free_start, free_goal = _nearest(passable, start, start_reach), _nearest(passable, goal, goal_reach)

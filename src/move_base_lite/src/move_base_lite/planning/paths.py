@@ -15,7 +15,7 @@ _ROTATION = {FORWARD: 0.0, BACKWARD: np.pi, LEFTWARD: np.pi / 2.0, RIGHTWARD: -n
 
 
 def headings_along(path_xy: np.ndarray, mode: int, start_yaw: float, goal_yaw: float) -> np.ndarray:
-    """Compute headings along a path.
+    """Compute headings along a path (global_planner: OrientationFilter).
 
     Args:
         path_xy: (N, 2) [m].
@@ -45,7 +45,16 @@ def headings_along(path_xy: np.ndarray, mode: int, start_yaw: float, goal_yaw: f
 
 
 def path_cost(costs: np.ndarray, window: CostmapWindow, path_xy: np.ndarray) -> float:
-    """navfn's cost of a path (N, 2), in metres of free space; inf if a cell of it is blocked."""
+    """Compute navfn's cost of a path.
+
+    Args:
+        costs: uint8 (rows, cols).
+        window: Position and resolution of the grid.
+        path_xy: (N, 2), in the window's frame [m].
+
+    Returns:
+        Cost in metres of free space; inf if a cell of the path is blocked.
+    """
     cells = np.floor((path_xy - (window.origin_x, window.origin_y)) / window.resolution).astype(np.int64)
     below = costs[cells[1:, 1], cells[1:, 0]].astype(float)
     if (below >= INSCRIBED).any():

@@ -33,7 +33,7 @@ class GuardedGlobalPlanner:
         goal_xy: Tuple[float, float],
         tolerance: float = 0.0,
     ) -> np.ndarray:
-        """See GlobalPlanner.plan.
+        """Call the wrapped planner (see GlobalPlanner.plan).
 
         Raises:
             PlanningPluginFailed: The planner raised, took too long, modified the costs or returned an invalid

@@ -20,9 +20,19 @@ HEURISTIC = 0.9 * NEUTRAL
 
 @numba.njit(cache=True)
 def traversal_costs(costs, allow_unknown, neutral, factor, lethal):
-    """Cost of entering each cell, uint8, as in navfn: 50 + 0.8 cost, at most 253; 254 is impassable.
+    """Compute the cost of entering each cell, as in navfn; by default 50 + 0.8 cost, at most 253.
 
-    The border of the map is impassable too, so that every neighbour of a passable cell is inside.
+    The border of the map is impassable, so that every neighbour of a passable cell is inside.
+
+    Args:
+        costs: uint8 (rows, cols).
+        allow_unknown: Whether unknown cells are passable.
+        neutral: Cost of entering a free cell.
+        factor: Factor of a cell's cost that is added.
+        lethal: Cost from which on a cell is impassable.
+
+    Returns:
+        uint8 (rows, cols); 254 is impassable.
     """
     rows, cols = costs.shape
     by_cost = np.full(256, IMPASSABLE, dtype=np.uint8)
@@ -60,10 +70,21 @@ def cost_to_go(costs: np.ndarray, targets: np.ndarray) -> Optional[np.ndarray]:
 
 @numba.njit(cache=True)
 def propagate_wavefront(traversal, start_row, start_col, goal_row, goal_col, use_astar):
-    """Potential (rows, cols), float32, propagated until the goal's is final; inf elsewhere (propNavFn*).
+    """Propagate the potential from the start until that of the goal is final (navfn: propNavFn*).
 
     Cells wait in three lists: the current and the next round, and those above the threshold, which rises when
-    the others are done. ``use_astar`` adds the straight distance to the goal to a priority.
+    the others are done.
+
+    Args:
+        traversal: (rows, cols) cost of entering each cell, uint8.
+        start_row: Row of the start.
+        start_col: Column of the start.
+        goal_row: Row of the goal.
+        goal_col: Column of the goal.
+        use_astar: Whether the straight distance to the goal is added to a cell's priority.
+
+    Returns:
+        Potential (rows, cols), float32, inf where the wavefront did not arrive.
     """
     cols, flat = traversal.shape[1], traversal.ravel()
     potential = np.full(flat.size, np.inf, dtype=np.float32)
@@ -130,10 +151,18 @@ def _potential_from_neighbours(potential, cell, cols, cost):
 
 @numba.njit(cache=True)
 def trace_path(potential, start_row, start_col, goal_row, goal_col, step):
-    """Trace the path from start to goal down the gradient (navfn's calcPath).
+    """Trace the path from start to goal down the gradient (navfn: calcPath).
 
-    ``step``: distance between points [cells]; 0: from cell to neighbouring cell. Returns the path (N, 2) of
-    col, row [cells], with centres at .5; empty if the goal was not reached.
+    Args:
+        potential: (rows, cols), float32.
+        start_row: Row of the start.
+        start_col: Column of the start.
+        goal_row: Row of the goal.
+        goal_col: Column of the goal.
+        step: Distance between points [cells]; 0: from cell to neighbouring cell.
+
+    Returns:
+        Path (N, 2) of col, row [cells], with centres at .5; empty if the goal was not reached.
     """
     rows, cols = potential.shape
     if not math.isfinite(potential[goal_row, goal_col]):

@@ -45,11 +45,11 @@ class _ReferenceScan:
 
 
 class SensorMonitor:
-    """Reports which sensor, if any, contradicts the others.
+    """Detects which sensor, if any, contradicts the others.
 
-    Compares scans with earlier scans and with odometry, odometry with commands and scans, and the wheels with
-    both. A sensor is trusted unless the data contradict it: a scan without returns may come from an empty
-    hall, unless there were walls all around just before.
+    It compares scans with earlier scans and with odometry, odometry with commands and scans, and the wheels
+    with both. A sensor is assumed to work unless the data contradict it: a scan without returns may come from
+    an empty hall, unless there were walls all around just before.
     """
 
     def __init__(self) -> None:

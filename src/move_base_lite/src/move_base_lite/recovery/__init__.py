@@ -1,4 +1,4 @@
-"""Recovery behaviours: what the robot does when there is no plan or no safe velocity.
+"""Recovery behaviours, which run when there is no plan or no safe velocity.
 
 ``behavior.py`` is the contract, ``registry.py`` lists the behaviours.
 """

@@ -25,7 +25,7 @@ class SpeedLimit:
     """A temporary speed limit.
 
     Attributes:
-        highest: Highest speeds, m/s and rad/s.
+        highest: Highest speeds [m/s, rad/s].
         distance: Distance after which the limit ends [m].
     """
 
@@ -35,11 +35,11 @@ class SpeedLimit:
 
 @dataclass(frozen=True)
 class RecoveryContext:
-    """What a recovery behaviour can read and change.
+    """Robot state and costmaps for a recovery behaviour.
 
     Attributes:
-        base_in_map: Robot in the map.
-        base_in_local: Robot in the frame of the local costmap.
+        base_in_map: Robot pose in the map frame.
+        base_in_local: Robot pose in the frame of the local costmap.
         twist: Velocity of the robot.
         period: Control period [s].
         global_costmap: Costmap for planning, which the behaviour may clear.

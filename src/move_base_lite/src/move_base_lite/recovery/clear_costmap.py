@@ -38,6 +38,7 @@ class ClearCostmapRecovery(RecoveryBehavior):
         self._settings = settings
 
     def step(self, context: RecoveryContext) -> Optional[Twist2]:
+        """Clear the costmaps, in one period (see RecoveryBehavior.step)."""
         side, affected = self._settings.reset_distance, self._settings.affected_maps
         for name, costmap, base in (
             (GLOBAL, context.global_costmap, context.base_in_map),

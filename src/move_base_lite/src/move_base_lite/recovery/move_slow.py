@@ -29,6 +29,7 @@ class MoveSlowRecovery(RecoveryBehavior):
         self._settings = settings
 
     def step(self, context: RecoveryContext) -> Optional[Twist2]:
+        """Clear the costmaps and set the speed limit, in one period (see RecoveryBehavior.step)."""
         settings = self._settings
         context.global_costmap.clear_around(context.base_in_map, 2.0 * settings.clearing_distance)
         context.local_costmap.clear_around(context.base_in_local, 2.0 * settings.clearing_distance)

@@ -14,12 +14,22 @@ from planar.plugins import PluginContract
 
 
 class GuardedRecovery:
-    """Wraps a user-defined recovery behaviour; what it raises becomes PluginFailed with its name."""
+    """Wraps a user-defined recovery behaviour; an error in it becomes PluginFailed with its name.
+
+    Args:
+        name: Name of the plugin, for messages.
+        make: Constructs the behaviour.
+    """
 
     def __init__(self, name: str, make: Callable[[], RecoveryBehavior]):
         self._guard = PluginGuard(name, make, PluginFailed)
 
     def step(self, context: RecoveryContext) -> Optional[Twist2]:
+        """Call the wrapped behaviour (see RecoveryBehavior.step).
+
+        Raises:
+            PluginFailed: The behaviour raised, took too long or returned a velocity that is not finite.
+        """
         with self._guard.watch() as behavior:
             command = behavior.step(context)
             if command is not None:

@@ -16,7 +16,7 @@ MIN_COMMANDED_ANGLE, MIN_TURNED_FRACTION = 1.5, 0.1
 
 @dataclass(frozen=True)
 class RotateSettings:
-    """Parameters of rotate_recovery, read from the namespace TrajectoryPlannerROS as there."""
+    """Parameters of rotate_recovery, from the namespace TrajectoryPlannerROS as in the official package."""
 
     acc_lim_theta: float = parameter(3.2, "highest acceleration of turning", "rad/s^2", POSITIVE)
     max_vel_theta: float = parameter(1.0, "highest turn rate", "rad/s", POSITIVE)
@@ -30,7 +30,8 @@ class RotateSettings:
 class RotateRecovery(RecoveryBehavior):
     """Rotates in place by one full turn to the left, so that the sensors cover all directions.
 
-    Ends early if the footprint would collide, or if the robot does not turn; rotate_recovery then never ends.
+    It ends early if the footprint would collide, or if the robot does not turn (rotate_recovery never ends
+    then).
     """
 
     def __init__(self, settings: RotateSettings):
@@ -40,6 +41,7 @@ class RotateRecovery(RecoveryBehavior):
         self._commanded = 0.0
 
     def step(self, context: RecoveryContext) -> Optional[Twist2]:
+        """Command the next part of the turn (see RecoveryBehavior.step)."""
         settings, base = self._settings, context.base_in_local
         if self._last_yaw is not None:
             self._remaining -= wrap(base.yaw - self._last_yaw)

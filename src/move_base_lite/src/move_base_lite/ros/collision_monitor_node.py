@@ -24,7 +24,7 @@ SILENT = "silent"
 
 
 class CollisionMonitorNode:
-    """Limits ``cmd_vel_in`` by ``scan`` and publishes ``cmd_vel_out`` and ``~state``."""
+    """Limits ``cmd_vel_in`` based on ``scan``; publishes ``cmd_vel_out`` and ``~state``."""
 
     def __init__(self):
         parameters = parameters_below("~")
@@ -97,4 +97,5 @@ def _settings_from(parameters) -> MonitorSettings:
 
 
 def main():
+    """Run the node ``collision_monitor``."""
     run("collision_monitor", CollisionMonitorNode)

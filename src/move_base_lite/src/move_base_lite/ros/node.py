@@ -252,4 +252,5 @@ def _short_name(parameters, key: str, default: str) -> str:
 
 
 def main():
+    """Run the node ``move_base``."""
     run("move_base", MoveBaseNode)

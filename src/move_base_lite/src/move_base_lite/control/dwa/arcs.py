@@ -8,9 +8,18 @@ import numpy as np
 
 @numba.njit(cache=True)
 def arc(start, v, omega, seconds, granularity, angular_granularity):
-    """Poses (N, 3) of an arc that starts at ``start`` (3,) [m, rad].
+    """Compute the poses of a trajectory of constant velocity.
 
-    Consecutive poses are at most ``granularity`` metres and ``angular_granularity`` radians apart.
+    Args:
+        start: (3,), pose x, y, yaw [m, rad].
+        v: Speed [m/s].
+        omega: Turn rate [rad/s].
+        seconds: Duration [s].
+        granularity: Largest distance between consecutive poses [m].
+        angular_granularity: Largest rotation between consecutive poses [rad].
+
+    Returns:
+        Poses (N, 3), of which the first is ``start``.
     """
     steps = _steps(v, omega, seconds, granularity, angular_granularity)
     dt = seconds / steps

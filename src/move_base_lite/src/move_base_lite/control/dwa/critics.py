@@ -21,8 +21,8 @@ class DwaScene(NamedTuple):
 
     Attributes:
         costs: (rows, cols) of the local costmap, uint8.
-        origin_x: Corner of the grids in the local frame [m]; so is ``origin_y``.
-        origin_y: See ``origin_x``.
+        origin_x: Lower left corner of the grids in the local frame [m].
+        origin_y: Lower left corner of the grids in the local frame [m].
         resolution: Cell size [m].
         outline_xy: (N, 2) footprint points in the base frame [m].
         path_map: (rows, cols) distance to the plan [cells] (base_local_planner's MapGrid).
@@ -43,7 +43,14 @@ class DwaScene(NamedTuple):
 
 
 class ArcSampling(NamedTuple):
-    """How a velocity is simulated: start pose (3,), time [s], and spacing of the poses [m, rad]."""
+    """How the trajectory of a velocity is sampled.
+
+    Attributes:
+        start: (3,), start pose x, y, yaw in the local frame [m, rad].
+        seconds: Duration [s].
+        granularity: Largest distance between consecutive poses [m].
+        angular_granularity: Largest rotation between consecutive poses [rad].
+    """
 
     start: np.ndarray
     seconds: float
@@ -52,7 +59,16 @@ class ArcSampling(NamedTuple):
 
 
 class CriticWeights(NamedTuple):
-    """Weights of the critics; those of distances are per cell, scaled by the resolution."""
+    """Weights of the critics.
+
+    Attributes:
+        obstacles: Weight of the highest cost under the footprint.
+        path_distance: Weight of ``path_distance`` [1/cell].
+        goal_distance: Weight of ``goal_distance`` [1/cell].
+        path_alignment: Weight of ``path_alignment`` [1/cell].
+        goal_alignment: Weight of ``goal_alignment`` [1/cell].
+        twirling: Weight of the turn rate [s/rad].
+    """
 
     obstacles: float
     path_distance: float
@@ -64,7 +80,17 @@ class CriticWeights(NamedTuple):
 
 @numba.njit(cache=True)
 def scores_of(velocities, sampling, scene, weights):
-    """Score (N,) of each velocity (N, 2), inf for an invalid one."""
+    """Score the trajectories of velocities: the weighted sum of the critics.
+
+    Args:
+        velocities: (N, 2) of v, omega [m/s, rad/s].
+        sampling: ArcSampling.
+        scene: DwaScene.
+        weights: CriticWeights.
+
+    Returns:
+        Scores (N,), lowest for the best velocity, inf for an invalid one.
+    """
     x, y, yaw = sampling.start
     start_contacts = count_contacts(
         scene.costs, scene.origin_x, scene.origin_y, scene.resolution, scene.outline_xy, x, y, yaw
@@ -95,8 +121,11 @@ def scores_of(velocities, sampling, scene, weights):
 def obstacles(poses, scene, start_contacts):
     """Highest cost under the footprint along the trajectory, inf if it collides.
 
-    A robot that starts in collision, with ``start_contacts`` footprint points, may move as long as the number
-    of contacts never rises.
+    Args:
+        poses: (N, 3), trajectory.
+        scene: DwaScene.
+        start_contacts: Footprint points in collision at the start. If there are any, the robot may move as
+            long as their number never rises.
     """
     highest = 0.0
     for j in range(poses.shape[0]):

@@ -22,11 +22,20 @@ class DwaPlanner:
     """
 
     def __init__(self, settings: DwaSettings, period: float):
+        """Create the planner.
+
+        Args:
+            settings: Limits, numbers of samples and weights.
+            period: Control period [s].
+        """
         self._settings = settings
         self._period = period
 
     def follow(self, context: ControlContext, plan: Plan, limits: Twist2) -> Trajectory:
-        """See LocalPlanner.follow. Simulating beyond the plan's end would make the robot creep there."""
+        """Compute the velocity with the best score (see LocalPlanner.follow).
+
+        A trajectory ends where the plan ends: the robot would creep there if it was simulated beyond.
+        """
         horizon = min(max(plan.distance_left / limits.v, SHORTEST_HORIZON), self._settings.sim_time)
         return self._evaluate(context, plan.path_xy, limits, horizon).best()
 

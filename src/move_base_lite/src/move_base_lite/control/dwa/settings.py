@@ -12,7 +12,7 @@ STEADY = "(no effect: oscillations are not tracked)"
 
 @dataclass(frozen=True)
 class DwaSettings(ControllerSettings):
-    """The parameters of DWAPlannerROS (Noetic) that have an effect here."""
+    """Parameters of DWAPlannerROS (Noetic) that have an effect here."""
 
     sim_time: float = parameter(1.7, "time that each velocity is simulated", "s", POSITIVE, dynamic=True)
     sim_granularity: float = parameter(
@@ -81,9 +81,9 @@ DWA_IGNORED = frozenset(
 
 @dataclass(frozen=True)
 class TrajectorySettings(DwaSettings):
-    """The parameters of TrajectoryPlannerROS (Noetic) that have an effect here, by its names and defaults.
+    """Parameters of TrajectoryPlannerROS (Noetic) that have an effect here, with its names and defaults.
 
-    It has no max_vel_trans, and turns towards the plan as DWA does by default.
+    It has no ``max_vel_trans``, and turns towards the plan as DWA does by default.
     """
 
     max_vel_trans: float = field(default=0.5, init=False)

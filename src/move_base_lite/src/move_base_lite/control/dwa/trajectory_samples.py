@@ -43,7 +43,11 @@ class DwaTrajectorySamples:
         return self.settings.publish_cost_grid_pc
 
     def best(self) -> Trajectory:
-        """The trajectory with the lowest score. Raises ControlError if none is valid."""
+        """Return the trajectory with the lowest score.
+
+        Raises:
+            ControlError: No trajectory is valid.
+        """
         if not np.isfinite(self.scores).any():
             raise ControlError("every velocity within reach leads into an obstacle", self)
         best = int(np.argmin(self.scores))

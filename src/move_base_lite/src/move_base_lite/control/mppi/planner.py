@@ -24,6 +24,12 @@ class MppiPlanner:
     """
 
     def __init__(self, settings: MppiSettings, period: float):
+        """Draw the noise.
+
+        Args:
+            settings: Horizon, numbers of samples, limits and weights.
+            period: Control period [s].
+        """
         self._settings = settings
         self._period = period
         steps = max(KNOTS, round(settings.horizon / period))
@@ -43,7 +49,10 @@ class MppiPlanner:
         )
 
     def follow(self, context: ControlContext, plan: Plan, limits: Twist2) -> Trajectory:
-        """See LocalPlanner.follow: the weighted mean of the samples, or the best of them if it is better."""
+        """Compute the velocity for the next period (see LocalPlanner.follow).
+
+        It is that of the weighted mean of the samples, or of the best sample if that is better.
+        """
         twist = context.twist
         start = np.array([*context.base_in_local.as_array(), twist.v, twist.omega])
         scene = scene_of(context, plan, self._settings.use_global_costmap)

@@ -27,7 +27,18 @@ UNCERTAINTY, UNCERTAINTY_GROWTH = 0.1, 0.1
 
 
 class MotionLimits(NamedTuple):
-    """Control period [s], and limits of speed and acceleration in SI units; see MppiSettings."""
+    """Control period and limits of motion; see MppiSettings.
+
+    Attributes:
+        period: Control period [s].
+        lowest_v: Lowest speed, negative if the robot may drive backwards [m/s].
+        highest_v: Highest speed [m/s].
+        highest_omega: Highest turn rate [rad/s].
+        acceleration: Highest acceleration [m/s^2].
+        turn_acceleration: Highest angular acceleration [rad/s^2].
+        approach_time: Minimum time to cover the remaining clearance [s].
+        creep_v: Speed allowed at any clearance [m/s].
+    """
 
     period: float
     lowest_v: float
@@ -40,7 +51,18 @@ class MotionLimits(NamedTuple):
 
 
 class CostWeights(NamedTuple):
-    """Weights of the cost terms, in metres of remaining path; see MppiSettings."""
+    """Weights of the cost terms; costs are in metres of remaining path. See MppiSettings.
+
+    Attributes:
+        safe_distance: Footprint clearance below which driving costs more [m].
+        obstacle: Cost per metre driven in contact with an obstacle.
+        turn: Weight of the squared turn rate [s].
+        backward: Cost per metre driven backwards.
+        heading: Cost of a final heading away from the goal [m].
+        delay: Weight of the remaining path over time [1/s].
+        dynamic_obstacle: Cost of a collision with a dynamic obstacle.
+        dynamic_obstacle_distance: Clearance from dynamic obstacles below which driving costs more [m].
+    """
 
     safe_distance: float
     obstacle: float
@@ -53,7 +75,7 @@ class CostWeights(NamedTuple):
 
 
 class RolloutStart(NamedTuple):
-    """What all rollouts from one state share.
+    """Values that all rollouts from one state share.
 
     Attributes:
         steps: Control periods of the horizon.
@@ -84,15 +106,21 @@ _inlined = numba.njit(cache=True, forceinline=True)
 def best_controls(
     noise, mean, extra_controls, start, temperature, clearance, to_go, outline_xy, dynamic_obstacles, numbers
 ):
-    """Weighted mean of the sampled controls, or the best sample if that is better.
+    """Compute the weighted mean of the sampled controls, or the best sample if that is better.
 
     Arguments from ``clearance`` on are those of kernel_arguments: named tuples make numba's dispatch slow.
 
     Args:
-        noise: (M, N, 2), added to ``mean`` (N, 2) of v, omega.
-        extra_controls: (L, N, 2), evaluated as they are.
+        noise: (M, N, 2), deviations of v, omega, added to ``mean``.
+        mean: (N, 2), controls v, omega of the last period, shifted by one step.
+        extra_controls: (L, N, 2), controls that are evaluated without noise.
         start: (5,) of x, y, yaw, v, omega.
-        temperature: Of the weights [m].
+        temperature: Cost above the best sample's at which a sample's weight falls to 1/e [m].
+        clearance: See MppiScene.
+        to_go: See MppiScene.
+        outline_xy: See MppiScene.
+        dynamic_obstacles: See MppiScene.
+        numbers: The numbers of MppiScene, MotionLimits and CostWeights.
 
     Returns:
         Controls (N, 2), cost, poses (N + 1, 3) and speeds (N, 2); the cost is inf if all samples collide.
@@ -118,7 +146,13 @@ def best_controls(
 
 
 def kernel_arguments(scene: MppiScene, limits: MotionLimits, weights: CostWeights) -> Tuple[Any, ...]:
-    """The arguments of ``best_controls`` after ``temperature``."""
+    """Pack the arguments of ``best_controls`` after ``temperature``.
+
+    Args:
+        scene: Surroundings of the robot.
+        limits: Control period and limits of motion.
+        weights: Weights of the cost terms.
+    """
     arrays, numbers = scene[:ARRAYS], scene[ARRAYS:]
     return (*arrays, np.array([*numbers, *limits, *weights]))
 
@@ -149,9 +183,17 @@ def _add_weighted(average, weight, i, samples):
 
 @numba.njit(cache=True)
 def costs_of(samples, start, problem):
-    """Cost of each sample, as ``drive`` computes it for one.
+    """Compute the cost of each sample, as ``drive`` does for one.
 
     All rollouts advance together, step by step: independent computations keep the processor's pipeline full.
+
+    Args:
+        samples: Tuple of ``noise``, ``mean`` and ``extra_controls`` (see best_controls).
+        start: (5,) of x, y, yaw, v, omega.
+        problem: Tuple of MppiScene, MotionLimits and CostWeights.
+
+    Returns:
+        Costs (M + L,) [m].
     """
     count = len(samples[0]) + len(samples[2])
     motions = np.empty(count, MOTION)
@@ -174,11 +216,17 @@ def costs_of(samples, start, problem):
 
 @numba.njit(cache=True)
 def drive(requested, start, problem, poses, speeds):
-    """Roll out the controls ``requested`` (N, 2) and return their cost [m].
+    """Roll out controls and return their cost [m].
 
-    Fills in the poses (N + 1, 3) and the reachable speeds (N, 2), limited by the clearance. The cost is inf
-    if the robot hits a static obstacle before it could have stopped. A robot that starts in collision may
-    move as long as the number of contacts does not rise.
+    The cost is inf if the robot hits a static obstacle before it could have stopped. A robot that starts in
+    collision may move as long as the number of contacts does not rise.
+
+    Args:
+        requested: (N, 2), controls v, omega.
+        start: (5,) of x, y, yaw, v, omega.
+        problem: Tuple of MppiScene, MotionLimits and CostWeights.
+        poses: (N + 1, 3), filled with the predicted poses x, y, yaw.
+        speeds: (N, 2), filled with the reachable v, omega, limited by the clearance.
     """
     motions = np.empty(1, MOTION)
     shared = _start_rollout(motions, len(requested), start, problem)

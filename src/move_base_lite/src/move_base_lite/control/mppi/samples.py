@@ -33,14 +33,30 @@ def smooth_noise(rng: np.random.Generator, settings: MppiSettings, steps: int) -
 
 
 def arc_controls(settings: MppiSettings, steps: int) -> np.ndarray:
-    """Constant controls (N, steps, 2), forward and backward: an escape from a local minimum of the mean."""
+    """Create constant controls, forward and backward: an escape from a local minimum of the mean.
+
+    Args:
+        settings: Limits of speed and turn rate.
+        steps: Control periods of the horizon.
+
+    Returns:
+        Controls (N, steps, 2) [m/s, rad/s].
+    """
     speeds = [settings.max_vel_x, 0.5 * settings.max_vel_x, settings.creep_vel_x, 0.0, settings.min_vel_x]
     rates = np.linspace(-settings.max_vel_theta, settings.max_vel_theta, 11)
     return np.repeat(_arcs(speeds, rates)[:, None, :], steps, axis=1)
 
 
 def evasive_controls(settings: MppiSettings, steps: int) -> np.ndarray:
-    """Controls (N, steps, 2) of two different arcs: wait and then go on, or evade and then stop."""
+    """Create controls of two different arcs: wait and then continue, or evade and then stop.
+
+    Args:
+        settings: Limits of speed and turn rate.
+        steps: Control periods of the horizon.
+
+    Returns:
+        Controls (N, steps, 2) [m/s, rad/s].
+    """
     speeds = [settings.max_vel_x, 0.0, settings.min_vel_x]
     rates = settings.max_vel_theta * np.array([-1.0, -0.3, 0.0, 0.3, 1.0])
     arcs = _arcs(speeds, rates)

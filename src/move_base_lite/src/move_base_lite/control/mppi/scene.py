@@ -25,18 +25,18 @@ ROUNDING = 1.0 + 1e-6
 
 
 class MppiScene(NamedTuple):
-    """The robot's surroundings: arrays, then numbers (see ARRAYS).
+    """Surroundings of the robot: arrays, then numbers (see ARRAYS).
 
     Attributes:
         clearance: (rows, cols) distance to the nearest static obstacle [m].
         to_go: (rows, cols) cost to go to the plan's end in the window [m].
         outline_xy: (N, 2) footprint points in the base frame [m].
         dynamic_obstacles: (N, 5), see ControlContext.
-        origin_x: Corner of the grids in the local frame [m]; so is ``origin_y``.
-        origin_y: See ``origin_x``.
+        origin_x: Lower left corner of the grids in the local frame [m].
+        origin_y: Lower left corner of the grids in the local frame [m].
         cells_per_metre: Inverse of the resolution.
-        inscribed_radius: Of the footprint [m].
-        circumscribed_radius: Of the footprint [m].
+        inscribed_radius: Inscribed radius of the footprint [m].
+        circumscribed_radius: Circumscribed radius of the footprint [m].
     """
 
     clearance: np.ndarray
@@ -59,8 +59,8 @@ def scene_of(context: ControlContext, plan: Plan, use_global_costmap: bool) -> M
 
     Args:
         context: Robot state, costmaps and dynamic obstacles.
-        plan: The plan; the cost to go leads to its last free point in the window.
-        use_global_costmap: Whether obstacles that only the global costmap has count too.
+        plan: Plan to follow; the cost to go leads to its last free point in the window.
+        use_global_costmap: Whether obstacles that only the global costmap contains count too.
 
     Raises:
         ControlError: The plan is blocked within the window.
@@ -82,9 +82,16 @@ def scene_of(context: ControlContext, plan: Plan, use_global_costmap: bool) -> M
 
 
 def costs_with_global(context: ControlContext) -> np.ndarray:
-    """Costs of the local costmap, uint8 (rows, cols), with the obstacles that only the global costmap has.
+    """Merge obstacles of the global costmap into the costs of the local one.
 
-    Inflated cells around those stay passable at the highest cost, as localization may be off by centimetres.
+    Inflated cells around obstacles that only the global costmap contains stay passable at the highest cost,
+    as localization may be off by centimetres.
+
+    Args:
+        context: Costmaps, and robot pose in both frames.
+
+    Returns:
+        Costs of the local costmap's cells, uint8 (rows, cols).
     """
     local, global_window = context.costmap, context.global_costmap.window
     local_in_map = context.base_in_map @ context.base_in_local.inverse()
@@ -122,10 +129,19 @@ def _static_obstacles(costs: np.ndarray, window: CostmapWindow, dynamic_obstacle
 
 @numba.njit(cache=True)
 def footprint_clearance(scene, x, y, c, s, exact_below):
-    """Lower bound of the distance from the footprint to the nearest static obstacle [m].
+    """Compute a lower bound of the distance from the footprint to the nearest static obstacle.
 
-    ``c``, ``s``: cosine and sine of the heading. A result above ``exact_below`` may be a coarse bound. In
-    collision, it is minus the number of footprint points in collision; outside of the window is an obstacle.
+    Args:
+        scene: MppiScene.
+        x: Robot position in the local frame [m].
+        y: Robot position in the local frame [m].
+        c: Cosine of the robot's heading.
+        s: Sine of the robot's heading.
+        exact_below: Clearance above which a coarse bound is sufficient [m].
+
+    Returns:
+        Distance [m]; in collision, minus the number of footprint points in collision. Outside of the window
+        is an obstacle.
     """
     rows, cols = scene.clearance.shape
     cells = scene.cells_per_metre
@@ -175,9 +191,14 @@ def _least_clearance(scene, base_row, base_col, c, s):
 
 @numba.njit(cache=True)
 def dynamic_obstacle_clearance(scene, x, y, seconds, exact_below):
-    """Distance from the robot's circle to the nearest dynamic obstacle ``seconds`` from now [m].
+    """Compute the distance from the robot's circle to the nearest dynamic obstacle at a future time.
 
-    At most ``exact_below``.
+    Args:
+        scene: MppiScene.
+        x: Robot position in the local frame [m].
+        y: Robot position in the local frame [m].
+        seconds: Time from now [s].
+        exact_below: Largest result [m].
     """
     nearest = exact_below
     for i in range(scene.dynamic_obstacles.shape[0]):
@@ -191,7 +212,14 @@ def dynamic_obstacle_clearance(scene, x, y, seconds, exact_below):
 
 @numba.njit(cache=True)
 def value_at(field, scene, x, y):
-    """A field's bilinear value at (x, y); FAR where it is unknown."""
+    """Interpolate a field bilinearly; FAR where it is unknown.
+
+    Args:
+        field: (rows, cols), values at the centres of the cells.
+        scene: MppiScene, for the position of the cells.
+        x: Position in the local frame [m].
+        y: Position in the local frame [m].
+    """
     rows, cols = field.shape
     cells = scene.cells_per_metre
     u = (y - scene.origin_y) * cells - 0.5

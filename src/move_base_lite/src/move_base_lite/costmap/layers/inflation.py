@@ -30,7 +30,13 @@ class InflationSettings(LayerSettings):
 
 
 def cost_at(distance: float, inscribed_radius: float, settings: InflationSettings) -> int:
-    """Cost of a cell at a distance [m] from the nearest obstacle (costmap_2d: computeCost)."""
+    """Compute the cost of a cell from its distance to the nearest obstacle (costmap_2d: computeCost).
+
+    Args:
+        distance: Distance to the obstacle [m].
+        inscribed_radius: Inscribed radius of the footprint [m].
+        settings: ``inflation_radius`` and ``cost_scaling_factor``.
+    """
     if distance <= 0.0:
         return LETHAL
     if distance > settings.inflation_radius:
@@ -54,7 +60,7 @@ class InflationLayer(Layer):
         )
 
     def apply(self, costs: np.ndarray, window: CostmapWindow, bounds: CellBounds) -> None:
-        """Inflate the cells of ``bounds``, also around obstacles within reach outside of it."""
+        """Inflate obstacles in a block, and those within reach outside of it (see Layer.apply)."""
         if self.reach_cells:
             source = window.grown(bounds, self.reach_cells)
             far = np.float32(self.reach_cells + 1)

@@ -100,14 +100,19 @@ class ObstacleLayer(Layer):
         self._costs = np.full((context.window.rows, context.window.cols), self._default, dtype=np.uint8)
 
     def add_observation(self, observation: Observation, base_in_frame: Pose2) -> None:
-        """Store an observation until the next update; a newer one of the same sensor replaces it."""
+        """Store an observation until the next update; it replaces an older one of the same sensor.
+
+        Args:
+            observation: Beams of one sensor.
+            base_in_frame: Robot pose in the costmap's frame when they were measured.
+        """
         if observation.topic in self._persistent:
             self._pending[observation.topic] = _LocatedObservation(
                 observation, base_in_frame @ observation.sensor_in_base
             )
 
     def update(self, placement: CostmapPlacement) -> CellBounds:
-        """Clear for all sensors, then mark, then clear the footprint."""
+        """Clear along the beams of all sensors, mark their ends, clear the footprint (see Layer.update)."""
         window = placement.window
         self._roll(placement.rows, placement.cols)
         changed = self._integrate_pending(window)

@@ -59,7 +59,15 @@ class StaticLayer(Layer):
 
 
 def static_costs(cells: np.ndarray, settings: StaticSettings) -> np.ndarray:
-    """Convert the cells of a map, int8 (rows, cols), to costs, uint8 (rows, cols)."""
+    """Convert occupancy values of a map to costs.
+
+    Args:
+        cells: int8 (rows, cols), 0 to 100, or -1 for unknown.
+        settings: Thresholds of the static layer.
+
+    Returns:
+        uint8 (rows, cols).
+    """
     threshold = settings.lethal_cost_threshold
     if settings.trinary_costmap:
         costs = np.where(cells >= threshold, LETHAL, FREE)

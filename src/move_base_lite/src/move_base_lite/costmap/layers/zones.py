@@ -38,7 +38,7 @@ class ZoneLayer(Layer):
         self.set_zones(before._blocked, before._occupied)
 
     def update(self, placement: CostmapPlacement) -> CellBounds:
-        """Draw the polygons again if they or the window may have changed."""
+        """Draw the polygons again if they or the window may have changed (see Layer.update)."""
         has_zones = bool(self._blocked or self._occupied)
         if not (self._has_changed or (self._is_rolling and has_zones)):
             return NO_CELLS
@@ -51,7 +51,7 @@ class ZoneLayer(Layer):
         return window.everything
 
     def apply(self, costs: np.ndarray, window: CostmapWindow, bounds: CellBounds) -> None:
-        """Raise the costs; unknown cells stay unknown in zones that the robot is in."""
+        """Raise the costs; in zones that the robot is in, unknown cells stay unknown (see Layer.apply)."""
         if self._costs.size:
             rows, cols = bounds.slices
             below, above = costs[rows, cols], self._costs[rows, cols]

@@ -32,9 +32,17 @@ class GoalFrameUnknown(NavigationError):
 def goal_from_msg(message: PoseStamped, map_frame: str, transforms: Transforms) -> Pose2:
     """Transform a goal into the map frame by the latest transforms, whatever its stamp.
 
+    Args:
+        message: Goal pose.
+        map_frame: Frame of the map.
+        transforms: Transforms from tf.
+
+    Returns:
+        Goal pose in the map frame.
+
     Raises:
-        InvalidGoal: If the pose is not finite, or its quaternion is invalid or not about the vertical.
-        GoalFrameUnknown: If its frame is not connected to the map.
+        InvalidGoal: The pose is not finite, or its quaternion is invalid or not about the vertical.
+        GoalFrameUnknown: Its frame is not connected to the map.
     """
     if not is_upright(message.pose.orientation):
         raise InvalidGoal(INVALID_QUATERNION)
@@ -52,7 +60,7 @@ def goal_from_msg(message: PoseStamped, map_frame: str, transforms: Transforms) 
 
 
 def is_upright(quaternion) -> bool:
-    """Whether a quaternion is finite, not zero and a rotation about the vertical."""
+    """Check whether a quaternion is finite, not zero and a rotation about the vertical."""
     parts = (quaternion.x, quaternion.y, quaternion.z, quaternion.w)
     squared = sum(part * part for part in parts)
     if not math.isfinite(squared) or squared < MIN_SQUARED_NORM:

@@ -50,11 +50,14 @@ class GoalServer:
     def accept_goal(self, now: rospy.Time) -> Optional[Pose2]:
         """Accept a new goal, which preempts the old one.
 
+        Args:
+            now: Stamp of the published goal.
+
         Returns:
-            The goal in the map; None if there is no new goal.
+            Goal pose in the map frame; None if there is no new goal.
 
         Raises:
-            NavigationError: If the goal is invalid; the action goal is accepted and has to be aborted.
+            NavigationError: The goal is invalid; the action goal is accepted and has to be aborted.
         """
         with self._server.action_server.lock, self._server.lock:
             if not self._server.is_new_goal_available():
@@ -65,12 +68,22 @@ class GoalServer:
         return goal
 
     def publish_feedback(self, base_in_map: Pose2, now: rospy.Time) -> None:
-        """Publish the robot's pose as feedback."""
+        """Publish the robot's pose as feedback.
+
+        Args:
+            base_in_map: Robot pose in the map frame.
+            now: Stamp of the message.
+        """
         if self._server.is_active():
             self._server.publish_feedback(MoveBaseFeedback(pose_msg(base_in_map, now, self._map_frame)))
 
     def finish(self, status: Status, text: str) -> None:
-        """Report the result of the goal."""
+        """Report the result of the goal.
+
+        Args:
+            status: Final status; all but SUCCEEDED and CANCELLED abort the goal.
+            text: Text of the action's result.
+        """
         if status is Status.SUCCEEDED:
             self._server.set_succeeded(text=text)
         elif status is Status.CANCELLED:
@@ -79,7 +92,14 @@ class GoalServer:
             self._server.set_aborted(text=text)
 
     def abort(self, text: str) -> bool:
-        """Abort the goal, also one that was not accepted yet; return whether there was one."""
+        """Abort the goal, also one that was not accepted yet.
+
+        Args:
+            text: Text of the action's result.
+
+        Returns:
+            Whether there was a goal.
+        """
         with self._server.action_server.lock, self._server.lock:
             if self._server.is_new_goal_available():
                 self._server.accept_new_goal()

@@ -8,7 +8,14 @@ from planar_ros.messages.conversion import scan_from_msg
 
 
 def check_message(message) -> None:
-    """Raise MessageError if a scan or point cloud is invalid."""
+    """Validate a scan or point cloud.
+
+    Args:
+        message: sensor_msgs LaserScan, PointCloud or PointCloud2.
+
+    Raises:
+        MessageError: The message is invalid.
+    """
     if isinstance(message, PointCloud2):
         _check_cloud(message)
     elif hasattr(message, "ranges"):

@@ -5,7 +5,14 @@ from sensor_msgs.msg import PointCloud, PointCloud2
 
 
 def points_of(message) -> np.ndarray:
-    """Convert a PointCloud or PointCloud2 to points (N, 3), float64, in its frame; they may be NaN."""
+    """Convert a point cloud message to points.
+
+    Args:
+        message: PointCloud or PointCloud2.
+
+    Returns:
+        (N, 3), float64, in the frame of the message [m]; may contain NaN.
+    """
     if isinstance(message, PointCloud):
         return np.array([(point.x, point.y, point.z) for point in message.points]).reshape(-1, 3)
     return _points_of_cloud2(message)

@@ -39,10 +39,10 @@ class NavigatorInputs:
     """Inputs of the Navigator at a control tick.
 
     Attributes:
-        base_in_map: Robot in the map.
-        base_in_odom: Robot in the odometry frame.
+        base_in_map: Robot pose in the map frame.
+        base_in_odom: Robot pose in the odometry frame.
         twist: Velocity from odometry.
-        observations: Sensor data since the last tick, relative to the present pose.
+        observations: Sensor data since the last tick, transformed to the present pose.
     """
 
     base_in_map: Pose2
@@ -93,7 +93,14 @@ class SensorBridge:
         return [sensor.topic for sensor in self._sensors]
 
     def inputs(self, now: rospy.Time) -> Optional[NavigatorInputs]:
-        """Combine the inputs at ``now``; None without valid transforms, or with a sensor fault."""
+        """Combine the inputs of a control tick.
+
+        Args:
+            now: Time of the tick.
+
+        Returns:
+            The inputs; None without valid transforms, or with a sensor fault.
+        """
         if self.missing_transform(now) is not None:
             self.set_command(Twist2())  # the robot stands while its pose is unknown
             return None
@@ -106,12 +113,20 @@ class SensorBridge:
         return NavigatorInputs(odom_in_map @ base_in_odom, base_in_odom, self._twist, observations)
 
     def set_command(self, command: Twist2) -> None:
-        """Set the command to compare sensors with; a stop because of a sensor fault does not count."""
+        """Set the velocity command to compare sensors with; a stop because of a sensor fault is ignored.
+
+        Args:
+            command: Velocity command that the robot follows.
+        """
         if self._fault is None:
             self._command = command
 
     def missing_transform(self, now: rospy.Time) -> Optional[str]:
-        """Describe the transform that is missing or too old, or the sensor fault; None if there is none."""
+        """Describe the transform that is missing or too old, or the sensor fault; None if there is none.
+
+        Args:
+            now: Time of the tick.
+        """
         self._fault = fault = self._monitor.fault(now.to_sec())
         self._diagnostics.publish(fault, now)
         if fault is not None:
@@ -168,7 +183,15 @@ class _Sensor:
         base_frame: str,
         on_scan: Callable[[LaserScanArrays], None],
     ):
-        """``on_scan`` is called for each scan of a source that marks."""
+        """Subscribe to the source.
+
+        Args:
+            source: Observation source.
+            transforms: Transforms from tf.
+            local_frame: Frame of the local costmap.
+            base_frame: Frame of the robot.
+            on_scan: Called for each scan of a source that marks.
+        """
         self._source, self._on_scan = source, on_scan
         self._transforms = transforms
         self._local_frame, self._base_frame = local_frame, base_frame

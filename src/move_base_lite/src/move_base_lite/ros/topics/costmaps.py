@@ -17,6 +17,11 @@ class CostmapTopics(rospy.SubscribeListener):
     """Publishes a costmap while there are subscribers; a new subscriber gets the full costmap."""
 
     def __init__(self, name: str):
+        """Advertise the topics.
+
+        Args:
+            name: Name of the costmap, the namespace of its topics.
+        """
         super().__init__()
         self._send_full = False
         self._next_stamp = rospy.Time(0)
@@ -35,7 +40,13 @@ class CostmapTopics(rospy.SubscribeListener):
         self._next_stamp = rospy.Time(0)
 
     def publish(self, now: rospy.Time, costmap: LayeredCostmap, base_in_frame: Pose2) -> None:
-        """Publish the costmap if it is due; call it at every tick."""
+        """Publish the costmap if it is due; call it at every tick.
+
+        Args:
+            now: Stamp of the messages.
+            costmap: Costmap to publish.
+            base_in_frame: Robot pose in the costmap's frame, for the footprint.
+        """
         settings = costmap.settings
         is_due = settings.publish_frequency > 0.0 and now >= self._next_stamp
         if not (is_due or self._send_full):

@@ -26,6 +26,14 @@ class DecisionTopics:
     """Publishes velocity commands, plans, recovery behaviours, progress and outcome."""
 
     def __init__(self, global_planner: str, local_planner: str, map_frame: str, odom_frame: str):
+        """Advertise the topics.
+
+        Args:
+            global_planner: Name of the global planner, the namespace of its plan.
+            local_planner: Name of the local planner, the namespace of its plans.
+            map_frame: Frame of global plans.
+            odom_frame: Frame of local plans.
+        """
         self._map_frame, self._odom_frame = map_frame, odom_frame
         self._next_feedback = rospy.Time(0)
         local = local_planner if local_planner in OFFICIAL_LOCAL_PLANNERS else DEFAULT_LOCAL_PLANNER
@@ -67,7 +75,15 @@ class DecisionTopics:
     def publish(
         self, now: rospy.Time, decision: Decision, base_in_map: Pose2, goal: Pose2, orientation_mode: int
     ) -> None:
-        """Publish everything of a decision except the action's result."""
+        """Publish everything of a decision except the action's result.
+
+        Args:
+            now: Stamp of the messages.
+            decision: Decision of the Navigator.
+            base_in_map: Robot pose in the map frame.
+            goal: Goal pose in the map frame.
+            orientation_mode: Mode of the headings along the plan (see headings_along).
+        """
         self.publish_end(decision)
         if decision.plan_xy is not None and self._plan.get_num_connections():
             plan = plan_msg(

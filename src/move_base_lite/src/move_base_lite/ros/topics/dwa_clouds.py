@@ -20,7 +20,12 @@ class DwaCloudTopics:
         self._costs = rospy.Publisher(f"~{local_planner}/cost_cloud", PointCloud2, queue_size=1)
 
     def publish(self, now: rospy.Time, samples: TrajectorySamples) -> None:
-        """Publish the samples; call it in the control period in which they were made."""
+        """Publish the samples; call it in the control period in which they were made.
+
+        Args:
+            now: Stamp of the messages.
+            samples: Samples of the local planner.
+        """
         if samples.shows_trajectories and self._trajectories.get_num_connections():
             x, y, *rest = samples.trajectory_points().T
             columns = (x, y, np.zeros(len(x)), *rest)

@@ -19,17 +19,39 @@ def plan_msg(
     start_yaw: float,
     goal_yaw: float,
 ) -> Path:
-    """Convert a global plan (N, 2) to a message, with headings by orientation_mode (see headings_along)."""
+    """Convert a global plan to a message.
+
+    Args:
+        path_xy: (N, 2) [m].
+        stamp: Stamp of the message.
+        frame: Frame of the path.
+        orientation_mode: Mode of the headings (see headings_along).
+        start_yaw: Heading at the start [rad].
+        goal_yaw: Heading at the goal [rad].
+    """
     return path_msg(path_xy, stamp, frame, headings_along(path_xy, orientation_mode, start_yaw, goal_yaw))
 
 
 def path_msg(path_xy: np.ndarray, stamp: rospy.Time, frame: str, yaws: np.ndarray) -> Path:
-    """Convert a path (N, 2) with headings (N,) [rad] to a message."""
+    """Convert a path with headings to a message.
+
+    Args:
+        path_xy: (N, 2) [m].
+        stamp: Stamp of the message.
+        frame: Frame of the path.
+        yaws: (N,) headings [rad].
+    """
     return trajectory_msg(np.column_stack((path_xy, yaws)), stamp, frame)
 
 
 def trajectory_msg(poses: np.ndarray, stamp: rospy.Time, frame: str) -> Path:
-    """Convert poses (N, 3), x, y, yaw, to a message."""
+    """Convert poses to a message.
+
+    Args:
+        poses: (N, 3) of x, y, yaw [m, rad].
+        stamp: Stamp of the message.
+        frame: Frame of the poses.
+    """
     header = Header(stamp=stamp, frame_id=frame)
     return Path(header, [PoseStamped(header, pose2_to_msg(Pose2(*pose))) for pose in poses.tolist()])
 

@@ -21,6 +21,12 @@ class PotentialTopic:
     """Publishes ``~<planner>/potential`` once per plan: a grid for GlobalPlanner, a cloud for navfn."""
 
     def __init__(self, planner: str, map_frame: str):
+        """Advertise the topic.
+
+        Args:
+            planner: Name of the global planner, the namespace of the topic.
+            map_frame: Frame of the potential.
+        """
         self._map_frame = map_frame
         self._latest: Optional[Potential] = None
         self._is_grid = planner == "GlobalPlanner"
@@ -31,7 +37,7 @@ class PotentialTopic:
         """Publish the potential if it is new; call it at every tick, since services plan between them.
 
         Args:
-            now: Stamp.
+            now: Stamp of the message.
             potential: Potential of the latest plan.
             scale: Highest value of a grid.
         """

@@ -16,6 +16,12 @@ class ZoneTopics:
     """Serves ``~zones/<name>`` (std_srvs/SetBool) for each zone and publishes ``~zones/markers``, latched."""
 
     def __init__(self, zones: Zones, map_frame: str):
+        """Advertise a service for each zone, and publish the markers.
+
+        Args:
+            zones: Zones to switch.
+            map_frame: Frame of the markers.
+        """
         self._zones, self._map_frame = zones, map_frame
         self._markers = rospy.Publisher("~zones/markers", MarkerArray, queue_size=1, latch=True)
         for zone in zones.all:
