@@ -202,15 +202,11 @@ without_warnings() { # LOG; warnings name the files that led to them, as errors 
 
 # -- the numerical kernels -----------------------------------------------------------------------------
 
-kernel_inputs() { (cd "$root" && { grep -rl --include='*.py' numba src || true; } | sort | xargs -r stat -c '%n %Y %s' | sha256sum); }
+# Files with kernels, and with classes that are arguments of kernels.
+kernel_inputs() { (cd "$root" && { grep -rlE --include='*.py' 'numba|NamedTuple' src || true; } | sort | xargs -r stat -c '%n %Y %s' | sha256sum); }
 
-# A cache that an earlier version has compiled may name classes that no longer exist: numba cannot read it then.
-warm_kernels() {
-    compile_kernels && return
-    find "$root/src" -path '*/__pycache__/*' \( -name '*.nbi' -o -name '*.nbc' \) -delete
-    compile_kernels
-}
+warm_kernels() { of_workspace home_service.kernel_cache "$root" && of_workspace home_service.warm; }
 
-compile_kernels() {
-    env -u PYTHONHOME PYTHONPATH="$(printf '%s:' "$root"/src/*/src)" "$root/.venv/bin/python3" -m home_service.warm
+of_workspace() { # MODULE ARGUMENT...: run a module of the packages in src/
+    env -u PYTHONHOME PYTHONPATH="$(printf '%s:' "$root"/src/*/src)" "$root/.venv/bin/python3" -m "$@"
 }

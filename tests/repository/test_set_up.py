@@ -201,17 +201,6 @@ def test_a_package_of_the_user_takes_the_place_of_a_tutorial(tmp_path):
     ]
 
 
-def test_kernels_compiled_by_an_earlier_version_that_cannot_be_read_are_compiled_again(tmp_path):
-    cache = tmp_path / "src/good/__pycache__"
-    cache.mkdir(parents=True)
-    (cache / "kernel.nbi").touch()
-    result = in_workspace(
-        tmp_path, "compile_kernels() { ! ls src/good/__pycache__/*.nbi; }; warm_kernels && echo compiled"
-    )
-    assert result.stdout.endswith("compiled\n"), result.stderr
-    assert list(cache.iterdir()) == []
-
-
 def test_two_packages_of_one_name_are_refused_in_a_sentence(tmp_path):
     write_package(tmp_path / "src/planar", "planar")
     write_package(tmp_path / "src/mine/planar", "planar")
