@@ -53,7 +53,7 @@ from slam_lite.point_cloud import PointCloud
 
 # Errors of a step between consecutive keyframes that its match does not include: metres and radians.
 _STEP_SIGMA_XY, _STEP_SIGMA_YAW = 0.01, 0.003
-# Standard deviations of the pose at which a robot resumes in a saved map, and of an unknown one.
+# Standard deviations of the pose at which a robot resumes in a saved map, and of an unknown pose.
 _GUESS_SIGMA_XY, _GUESS_SIGMA_YAW = 0.5, 0.3
 _LOST_SIGMA_XY, _LOST_SIGMA_YAW = 1e3, 1e2
 # Keyframes that are merged to relocalize a lost robot, and its distance from the map until then [m].
@@ -150,7 +150,7 @@ class ClosureTask:
                 yield closure
 
     def _joined(self, edges: Sequence[Edge]) -> np.ndarray:
-        """The poses (N, 3), with a lost trajectory moved to where one of ``edges`` puts it."""
+        """Return the poses (N, 3), with a lost trajectory moved as one of ``edges`` requires."""
         for edge in edges:
             if self.lost_since is not None and edge.first < self.lost_since <= edge.second:
                 place, recent = (Pose2.from_array(self.poses[i]) for i in (edge.first, edge.second))
@@ -162,7 +162,7 @@ class ClosureTask:
         return self.poses
 
     def _recognize_places(self) -> Tuple[PlaceDatabase, List[LoopCandidate]]:
-        """The place descriptors up to the newest keyframe, and candidates where it looks alike."""
+        """Return the place descriptors up to the newest keyframe, and candidates at similar places."""
         places, travelled = self.places, travelled_distances(self.poses)
         candidates: List[LoopCandidate] = []
         segment = places.next_segment(travelled)
@@ -181,7 +181,7 @@ class ClosureTask:
         return places, candidates
 
     def _match_credible_places(self, recent: PlaceDescriptor, places: PlaceDatabase) -> List[PlaceHypothesis]:
-        """Places that look alike and are possible by the graph, of those that the other search misses."""
+        """Match places that the graph's drift allows, outside of the windows of the other search."""
         paths, before = shortest_paths(recent.keyframe, len(self.poses), self.edges, edge_lengths(self.edges))
         drift = np.column_stack(drift_along(paths, before, self.poses, with_average_slip(self.edges)))
         keyframes = [descriptor.keyframe for descriptor in places.descriptors]

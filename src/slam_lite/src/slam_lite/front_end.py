@@ -26,13 +26,14 @@ _GOOD_RESPONSE = 0.7
 # again after half of it.
 _NEARBY_RADIUS = 10.0
 _NO_PRIOR = np.zeros((3, 3))
-# Motion of the scans, metres or radians, while odometry stands still, from which on odometry is stuck.
+# Matched motion, metres or radians, above which odometry that reports no motion is stuck.
 _STUCK_MOTION = 0.03
-# Squared error of odometry, in units of its variance, after which it may be off by as much again.
+# Squared error of odometry, in units of its variance, above which the next error may be as large.
 _SLIP_CHI_SQUARE = 25.0
-# Points of a match that outweigh odometry, and the information [1 / m^2] that it then has in each direction.
+# Number of matching points above which a match is reliable, and least information [1 / m^2] in each direction
+# for the error model to learn from it.
 _MIN_POINTS, _MIN_INFORMATION = 60, 4e3
-# Variance (3,), m^2, m^2, rad^2, of a robot's motion between two scans if it moves on as before.
+# Variance (3,) [m^2, m^2, rad^2] of the motion between two scans if it is predicted to continue as before.
 _STEADY_MOTION_VARIANCE = np.array([0.1**2, 0.1**2, 0.15**2])
 
 
@@ -124,7 +125,7 @@ class RecentKeyframes:
         """Do nothing: the keyframes around the robot are the last ones."""
 
     def unseen_fraction(self, cloud: PointCloud, base_in_track: Pose2) -> float:
-        """Fraction of a scan, 0 to 1, in directions that the last keyframe does not cover."""
+        """Compute the fraction of a scan, 0 to 1, in directions that the last keyframe does not cover."""
         return (
             0.0 if self._last_coverage is None else self._last_coverage.unseen_fraction(cloud, base_in_track)
         )
@@ -265,7 +266,7 @@ class FrontEnd:
         return match
 
     def _search_wide(self, cloud: PointCloud, centers: Tuple[Pose2, ...], fallback: Match) -> Match:
-        """A good and unique match around one of ``centers``, else ``fallback``.
+        """Return a good and unique match around one of ``centers``, else ``fallback``.
 
         Areas seen for the first time match poorly too, and must not be matched to something else.
         """

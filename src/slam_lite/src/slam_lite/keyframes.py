@@ -19,7 +19,7 @@ from slam_lite.state import MapState
 
 # Cell size of the coverage grid [m], and scans after which a cell counts as covered.
 _CELL, _COVERED_COUNT = 0.2, 6
-# Share of the cells that a keyframe must be needed for, or it is redundant.
+# Share of a keyframe's cells that are not covered otherwise, below which it is redundant.
 _MIN_NEEDED_SHARE = 0.15
 # Empty cells around the lasers and the ends of their beams.
 _MARGIN = 3

@@ -20,7 +20,7 @@ from slam_lite.point_cloud import PointCloud, point_cloud_of
 from slam_lite.rendering import Evidence, ScanBeams, beams_of, render_in_bands
 from slam_lite.state import MapState
 
-# Largest distance [m] of a given robot pose from the map; both have to be drawn as one picture.
+# Largest distance [m] of a given robot pose from the map: one grid has to contain both.
 _MAX_DISTANCE_FROM_MAP = 200.0
 
 
@@ -229,9 +229,9 @@ class Mapper:
         self._search_near_prior_only = True
 
     def _relocalize(self, cloud: PointCloud) -> None:
-        """Start a trajectory where the scan matches the map, or beside the map.
+        """Start a trajectory at the pose where the scan matches the map, or beside the map.
 
-        One scan is enough in a finished map; in one that grows, it may match elsewhere as well.
+        One scan is sufficient in a finished map; in a growing map it may match at another place as well.
         """
         found = None
         if self._prior_pose is not None:

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-# Bin size of the histogram of readings [m], which starts here: nearer readings are seldom "no return".
+# Bin size of the histogram [m], and range at which it starts [m]: nearer readings are seldom "no return".
 _BIN, _NEAREST = 0.1, 15.0
 # Farthest reading of any laser [m].
 _FARTHEST = 1000.0

@@ -146,9 +146,10 @@ def _points_and_normals(ranges, angle, increment, shortest, longest, x, y, spaci
 
 @numba.njit(cache=True, nogil=True)
 def _set_normal(points, normals, i):
-    """Normal to the principal axis of the neighbours: three on each side, more within 0.2 m, none past a gap.
+    """Compute the normal to the principal axis of a point's neighbours.
 
-    Where gaps leave none, it may be a wall seen at a grazing angle: then the chord of the next points counts.
+    The neighbours are three points on each side and further ones within 0.2 m, none past a gap. If gaps leave
+    none, the point may lie on a wall seen at a grazing angle: then the chord of the next points is used.
     """
     n, sx, sy, sxx, syy, sxy = 1, 0.0, 0.0, 0.0, 0.0, 0.0
     for side in (-1, 1):

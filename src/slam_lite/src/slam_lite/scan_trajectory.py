@@ -1,4 +1,4 @@
-"""The trajectory of a log: the pose of every scan, also of those that the mapper dropped."""
+"""The trajectory of a log: the pose of every scan, including those that the mapper dropped."""
 
 from array import array
 from typing import Optional

@@ -137,10 +137,10 @@ def _enlarged(tiles: np.ndarray) -> np.ndarray:
 
 @numba.njit(cache=True, nogil=True)
 def _trace(tiles, index, low, used, start, ends, marks, amount):
-    """Adds ``amount`` to the visits, [1], of each beam's cells and the hits, [0], of its end.
+    """Add ``amount`` to the visits, [1], of each beam's cells and to the hits, [0], of its end.
 
-    Only in the rows from ``low`` on that ``index`` covers; takes tiles from ``used`` on where there are none
-    yet. Returns how many beams there was room for, and ``used`` afterwards.
+    Only the rows from ``low`` on that ``index`` covers are counted; new tiles are taken from ``used`` on.
+    Returns for how many beams there was room, and ``used`` afterwards.
     """
     high = low + len(index) * TILE
     for i in range(len(ends)):

@@ -175,7 +175,11 @@ class Controller:
     def _turn_or_back_out(
         self, error: float, context: ControlContext, path_xy: np.ndarray, failure: ControlError
     ) -> ControlOutput:
-        """Turn towards the plan or back out of a collision if the planner failed. Raises ControlError."""
+        """Turn towards the plan or back out of a collision if the planner failed.
+
+        Raises:
+            ControlError: Neither is possible.
+        """
         control = self._turn(error, context, path_xy) if abs(error) > HEADING_TOLERANCE else None
         if control is None:
             control = self._back_out(context, path_xy, failure.trajectory_samples)
@@ -184,7 +188,11 @@ class Controller:
     def _back_out(
         self, context: ControlContext, path_xy: np.ndarray, samples: Optional[TrajectorySamples] = None
     ) -> ControlOutput:
-        """Drive so that fewer footprint points are in collision. Raises ControlError if impossible."""
+        """Drive so that fewer footprint points are in collision.
+
+        Raises:
+            ControlError: No velocity does so.
+        """
         costmap, base_in_local = context.costmap, context.base_in_local
         command = escape_command(costmap, base_in_local) if costmap.contacts(base_in_local) else None
         if command is None:

@@ -75,11 +75,20 @@ class TrajectorySamples(Protocol):
         ...
 
     def trajectory_points(self) -> np.ndarray:
-        """Points (M, 4) of all valid trajectories in the local frame: x, y, yaw, score."""
+        """Compute the points of all valid trajectories.
+
+        Returns:
+            (M, 4), rows of x, y, yaw in the local frame, and score.
+        """
         ...
 
     def cell_costs(self) -> np.ndarray:
-        """Reachable cells (M, 6): x, y, cells to the plan, cells to its end, cost, weighted sum."""
+        """Compute the costs of all reachable cells.
+
+        Returns:
+            (M, 6), rows of x, y in the local frame, cells to the plan, cells to its end, cost and weighted
+            sum.
+        """
         ...
 
 

@@ -132,8 +132,14 @@ def _fitted(points_xy, expected_xy, radius, prior):
 def _project(angles, ranges, limits, place):
     """Project the beams that end within range into the odom frame.
 
-    ``limits``: range_min, range_max of the sensor and the maximum range; ``place``: x, y, yaw of the sensor.
-    Returns the beams (N,) by angle, their end points (N, 2) and the free range (DIRECTIONS,).
+    Args:
+        angles: (N,), angles of the beams in the sensor frame [rad].
+        ranges: (N,) [m].
+        limits: ``range_min`` and ``range_max`` of the sensor and the maximum range [m].
+        place: x, y, yaw of the sensor [m, rad].
+
+    Returns:
+        Beams (M,) by angle, their end points (M, 2) and the free range (DIRECTIONS,) [m].
     """
     near, free = _beams_and_free_ranges(angles, ranges, limits)
     beams = near

@@ -98,7 +98,7 @@ class DynamicObstacleTracker:
     at = renamed_method("at", "obstacles_at")
 
     def _associate(self, snapshot: ScanSnapshot, track_appearing: bool) -> None:
-        """Correct tracks with the segments that match them, and start tracks of the others."""
+        """Correct tracks with the segments that match them, and start tracks for the other segments."""
         reference = self._reference_snapshot(snapshot.stamp)
         recent = self._snapshot_at(snapshot.stamp - MIN_REFERENCE_AGE)
         last = self._snapshot_at(snapshot.stamp - APPEARANCE_AGE)

@@ -98,7 +98,12 @@ class GoalExecution:
 
     @classmethod
     def start(cls, goal: Pose2, state: RobotState) -> "GoalExecution":
-        """Start the execution of a goal at this tick."""
+        """Start the execution of a goal.
+
+        Args:
+            goal: Goal pose in the map frame.
+            state: Robot state at this control tick.
+        """
         now = state.stamp
         return cls(goal, now, state, state, now, now, now)
 

@@ -96,7 +96,7 @@ def _wait_for_sensor(
 def _plan(
     execution: GoalExecution, state: RobotState, components: NavigatorComponents, has_plan: bool = False
 ) -> bool:
-    """Make a plan and hand it to the controller; return whether there is one."""
+    """Make a plan and pass it to the controller; return whether there is one."""
     frequency = components.settings.move_base.planner_frequency
     execution.next_plan = state.stamp + (1.0 / frequency if frequency > 0.0 else math.inf)
     execution.planned_at = state.stamp

@@ -36,7 +36,7 @@ class _ReferenceScan:
     """A scan with enough returns.
 
     Attributes:
-        base: Robot in the odometry frame at the scan.
+        base: Robot pose in the odometry frame at the scan.
         max_distance: Distance the robot can move before the returns may be out of range [m].
     """
 

@@ -11,9 +11,9 @@ from slam_lite.graph.pose_graph import Edges
 
 # Lower bound of an information [1 / m^2].
 _LEAST_INFORMATION = 1e-6
-# Edges of steps on which wheels may have slipped unnoticed are loose, for the graph to bend there; but few
-# have. Standard deviation of heading [rad] of such a step on average; and from which on an edge is no step,
-# but a guess of where a new trajectory starts.
+# Steps with possible wheel slip have a large heading variance, so that the graph can bend there, but few of
+# them have slipped: their average standard deviation of heading [rad]. Edges with a larger one than the
+# second value [rad] are no steps, but guesses of where a new trajectory starts.
 _AVERAGE_YAW, _GUESSED_YAW = 0.024, 0.2
 
 

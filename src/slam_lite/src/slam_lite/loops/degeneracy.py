@@ -103,10 +103,11 @@ def constraint_at_peak(
 
 
 def _max_shift(match: Match, direction: np.ndarray, cloud: PointCloud, local_map: LocalMap) -> float:
-    """How far a match can be shifted along a direction and still match [m], up to the largest of ``_SHIFTS``.
+    """Find how far a match can be shifted along a direction and still match [m].
 
-    Along a smooth wall, a few noisy points hold a match in place, and its information takes them for
-    features; so do the corners of a wall of which one side was seen before, and the other one is seen now.
+    The result is at most the largest of ``_SHIFTS``. Along a smooth wall, a few noisy points can fix a match
+    although they are not features. The same holds for the corners of a wall of which one side was seen before
+    and the other is seen now.
     """
     pose = match.base_pose
     shifted = [Pose2(pose.x + by * direction[0], pose.y + by * direction[1], pose.yaw) for by in _SHIFTS]
@@ -121,7 +122,7 @@ def _nearest_on_line(pose: Pose2, direction: np.ndarray, guess: Pose2) -> Pose2:
 
 
 def _with_error(information: np.ndarray, sigma_xy: np.ndarray) -> np.ndarray:
-    """The information (3, 3) if there is a further error of standard deviation ``sigma_xy`` (2,), metres."""
+    """Add a further error of standard deviation ``sigma_xy`` (2,) [m] to an information (3, 3)."""
     sigma = np.append(sigma_xy, 0.0)
     weighted = information @ sigma
     return information - np.outer(weighted, weighted) / (1.0 + sigma @ weighted)

@@ -19,17 +19,18 @@ from slam_lite.matching.correlative import SearchWindow
 
 # Growth of the search window with the path along the graph: metres and radians per metre.
 _DRIFT_DISTANCE, _DRIFT_ANGLE = 0.04, 0.008
-# Size of windows that are searched once an interval [m].
+# Size [m] of windows that are searched once per closure_interval; larger ones are searched less often.
 _OFTEN_DISTANCE = 8.0
 _MIN_WINDOW, _MAX_WINDOW = SearchWindow(0.3, 0.1), SearchWindow(12.0, 0.8)
 # Path from which on the window does not grow any more [m].
 _MAX_PATH = _MAX_WINDOW.distance / _DRIFT_DISTANCE
-# Standard deviations by which the graph may be off; those that matches state are pessimistic.
+# Largest error of the graph in standard deviations, which are pessimistic.
 _MAX_SIGMAS = 1.5
-# Error of the pose at which two places look alike.
+# Largest error of a pose from place recognition.
 _RECOGNITION_WINDOW = SearchWindow(4.0, 0.15)
-# Keyframes and path [m] up to the recent one that are merged for a match in windows up to the given size [m];
-# in wider ones in proportion, up to so many times as many: there it takes more to distinguish corridors.
+# Number of keyframes, and path [m] up to the recent one, that are merged for a match in windows up to
+# _UNSCALED_DISTANCE [m]. In wider windows more are needed to distinguish corridors: in proportion to the
+# size, at most _MAX_SCALE times as many.
 _RECENT_KEYFRAMES, RECENT_PATH = 12, 4.0
 _UNSCALED_DISTANCE, _MAX_SCALE = 2.0, 3.0
 # Standard deviation, as a path length [m], from which on a step is a guess.

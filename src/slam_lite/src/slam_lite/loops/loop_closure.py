@@ -22,14 +22,14 @@ from slam_lite.loops.loop_candidates import RECENT_PATH, LoopCandidate
 _FAMILIAR_DISTANCE = 1.0
 # Largest distance between two loop closures that share no scan and yet concern the same segment [m].
 _MAX_WITNESS_DISTANCE = 15.0
-# Distance over which a recognized place has to look alike [m]: crossings of corridors are much the same.
+# Distance over which a recognized place has to be similar [m]: crossings of corridors resemble each other.
 _MIN_RECOGNIZED_DISTANCE = 11.0
-# Two loop closures that differ by more than this [m] put the robot to different places.
+# Difference [m] above which two loop closures place the robot differently.
 _CONTRADICTION = 3.0
 # Errors of a loop closure that its match does not include: metres and radians.
 _SIGMA_XY, _SIGMA_YAW = 0.02, 0.005
-# Chi-square, by the graph's covariance, from which on a loop closure needs confirmation: the covariance is
-# pessimistic, and of right ones not one in a hundred exceeds it.
+# Chi-square, given the graph's covariance, above which a loop closure needs confirmation. The covariance is
+# pessimistic: fewer than one in a hundred correct loop closures exceed it.
 _MAX_CHI_SQUARE = 6.0
 
 
@@ -109,7 +109,7 @@ class LoopClosureVerifier:
 
     @cached_property
     def _covariance(self) -> NodeCovariance:
-        """Of the newest keyframe."""
+        """Covariance of the newest keyframe."""
         return NodeCovariance(self._poses, self._edges, len(self._poses) - 1)
 
     def _still_contradicts(self, closure: LoopClosure, group: Sequence[LoopClosure]) -> bool:

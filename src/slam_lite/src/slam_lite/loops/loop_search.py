@@ -20,7 +20,7 @@ from slam_lite.point_cloud import PointCloud, downsampled
 # Keyframes of the place, to each side, and their distance from it [m], that are merged for a match in a small
 # window.
 _PLACE_KEYFRAMES, _PLACE_RADIUS = 20, 6.0
-# Fraction of the walls that may be seen through where a candidate is ambiguous, as by people who have left.
+# Fraction of the walls that may be seen through at an ambiguous candidate, as people may have left since.
 _MAX_VISIBILITY_CONFLICT = 0.025
 _MIN_POINTS, _MAX_POINTS = 50, 500
 
@@ -77,7 +77,7 @@ def find_loop_closure(
 def _clouds_around(
     place: int, scale: float, end: int, poses: np.ndarray, clouds: Sequence[PointCloud]
 ) -> List[PosedCloud]:
-    """The keyframes near a place, before keyframe ``end``, each with its pose in that of the place."""
+    """Return the keyframes near a place, before keyframe ``end``, with their poses in the place's frame."""
     reach = round(scale * _PLACE_KEYFRAMES)
     keyframes = range(max(0, place - reach), min(end, place + reach + 1))
     posed = [(clouds[i], relative_pose(poses, place, i)) for i in keyframes]

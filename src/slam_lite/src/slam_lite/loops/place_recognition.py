@@ -23,12 +23,12 @@ from slam_lite.point_cloud import PointCloud, merge_clouds
 # along each other as far as the inner half is wide.
 _BIN, _BINS = 0.25, 256
 _REACH = 0.25 * _BIN * _BINS
-# Walls are measured in pieces of this size [m], however often they were seen.
+# Size [m] of the pieces in which walls are measured; each counts once, however often it was seen.
 _PIECE = 0.1
 # Cosine from which on a wall faces a direction; least number of pieces of a place, and least strength of its
 # axes, 0 to 1.
 _FACING_COSINE, _MIN_PIECES, _MIN_STRENGTH = 0.9, 60, 0.3
-# Largest distance between two descriptions of the same place [m].
+# Largest distance between the keyframes of two descriptors of the same place [m].
 _MAX_SHIFT = 12.0
 # Places compared in one batch, to limit memory.
 _BATCH = 128
@@ -280,9 +280,14 @@ def match_places(recent: PlaceDescriptor, places: Sequence[PlaceDescriptor]) -> 
 
 
 def _compare(stacked: np.ndarray, spectra: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
-    """Similarity (N,) of a place to others, and the best of ``_SHIFTS`` along both directions (N, 2).
+    """Compare a place with others.
 
-    ``stacked``: spectra (N, 4, F) of the others; ``spectra``: (4, F).
+    Args:
+        stacked: (N, 4, F), spectra of the others.
+        spectra: (4, F), spectra of the place.
+
+    Returns:
+        Similarities (N,), and the best of ``_SHIFTS`` along both directions (N, 2).
     """
     correlated = (stacked * spectra.conj()).reshape(len(stacked), 2, 2, -1).sum(axis=2)
     correlation = irfft(correlated, _BINS, axis=-1)[:, :, _SHIFTS]

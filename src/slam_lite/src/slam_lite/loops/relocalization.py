@@ -22,14 +22,14 @@ from slam_lite.point_cloud import PointCloud, downsampled, merge_clouds
 
 # Distance between places [m], window searched around each, and number of places that are searched at most.
 _APART, _WINDOW, _MAX_PLACES = 4.0, SearchWindow(3.5, math.pi), 60
-# Keyframes within this distance of a place [m] are matched to, at most so many.
+# Distance from a place [m] within which keyframes are matched to, and their largest number.
 _RADIUS, _MAX_KEYFRAMES = 8.0, 60
 _MAX_POINTS, _MIN_POINTS = 500, 50
 # Least response, and largest fraction of the walls that may be seen through: furniture moves.
 _MIN_RESPONSE, _MAX_VISIBILITY_CONFLICT = 0.65, 0.15
 # Share of the best score that makes another pose a rival; poses within these, metres and radians, are one.
 _RIVAL_SHARE, _SAME_PLACE, _SAME_HEADING = 0.9, 0.6, 0.5
-# Information of a pose found so: 0.05 m and 0.02 rad.
+# Information of a pose from relocalization: standard deviations of 0.05 m and 0.02 rad.
 _INFORMATION = np.diag([0.05**-2, 0.05**-2, 0.02**-2])
 # Window around the prior pose, which is searched first.
 _PRIOR_WINDOW = SearchWindow(1.0, 0.4)

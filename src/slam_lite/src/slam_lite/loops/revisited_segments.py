@@ -23,7 +23,8 @@ from slam_lite.point_cloud import PointCloud, downsampled
 
 # Path between two searches; distance of a place by the graph, and path since it was visited [m].
 _SEARCH_STEP, _NEAR, _REVISIT_PATH = 3.0, 5.0, 60.0
-# Places with more keyframes between them are two; one nearer than this to a loop closure [m] is known.
+# Number of keyframes between two different places, and distance from a loop closure [m] within which a place
+# is known.
 _KEYFRAMES_APART, _KNOWN = 30, 6.0
 # Path for which a loop closure predicts the robot's pose [m].
 _PREDICTION_PATH = 40.0

@@ -23,8 +23,8 @@ from slam_lite.loops.place_recognition import (
 from slam_lite.loops.tracked_trajectory import TrackedTrajectory
 from slam_lite.point_cloud import PointCloud
 
-# Path [m] after which a place is seen another time; keyframes nearer than this [m] to a loop closure are
-# known.
+# Path [m] after which a place counts as revisited, and distance from a loop closure [m] within which
+# keyframes are known.
 _REVISIT_PATH, _KNOWN = 60.0, 6.0
 # Largest difference of two poses at one place, metres and radians.
 _SAME_XY, _SAME_YAW = 3.0, 0.15
@@ -72,8 +72,9 @@ def recognize_sequences(
 def _query_all(clouds: Sequence[PointCloud], trajectory: TrackedTrajectory, closed: np.ndarray) -> np.ndarray:
     """Compare each place with those visited long before, except places near the ``closed`` keyframes.
 
-    Returns rows (N, 6): place, recent keyframe, the latter's x, y and yaw in the former, similarity. As rows
-    they take a tenth of the memory of objects.
+    Returns:
+        Rows (N, 6): place, recent keyframe, the latter's x, y and yaw in the former, similarity. As rows they
+        take a tenth of the memory of objects.
     """
     places = descriptors_along(clouds, trajectory.poses, trajectory.travelled)
     travelled = trajectory.travelled
@@ -111,10 +112,16 @@ def _is_new_and_possible(hypothesis: PlaceHypothesis, poses: np.ndarray, edges: 
 def _count_consistent(
     nodes: np.ndarray, measured: np.ndarray, poses: np.ndarray, travelled: np.ndarray
 ) -> np.ndarray:
-    """Number (N,) of queries around each hypothesis with a consistent one.
+    """Count the queries around each hypothesis that have a consistent one.
 
-    ``nodes``: (N, 2), place and recent keyframe, in the order of the latter; ``measured``: (N, 3), recent in
-    place.
+    Args:
+        nodes: (N, 2), place and recent keyframe, in the order of the latter.
+        measured: (N, 3), recent keyframe in the place.
+        poses: (K, 3), poses of all keyframes in the track frame.
+        travelled: (K,), path length up to each keyframe [m].
+
+    Returns:
+        (N,).
     """
     by_hypothesis = compose_poses(poses[nodes[:, 0]], measured)
     return _counts(nodes[:, 1], travelled[nodes], poses[nodes[:, 1]], by_hypothesis)
@@ -122,7 +129,14 @@ def _count_consistent(
 
 @numba.njit(cache=True, nogil=True)
 def _counts(recents, travelled, tracked, by_hypothesis):
-    """``tracked``, ``by_hypothesis``: (N, 3), poses of the recent keyframes."""
+    """Kernel of _count_consistent.
+
+    Args:
+        recents: (N,), indices of the recent keyframes.
+        travelled: (N, 2), path length up to place and recent keyframe [m].
+        tracked: (N, 3), poses of the recent keyframes in the track frame.
+        by_hypothesis: (N, 3), the same according to each hypothesis.
+    """
     counts = np.zeros(len(recents), dtype=np.int64)
     start = 0
     for i in range(len(recents)):

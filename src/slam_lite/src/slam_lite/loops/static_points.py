@@ -13,7 +13,7 @@ from slam_lite.point_cloud import PointCloud, merge_clouds
 
 # Scans with fewer points than this on average are filtered.
 _SPARSE = 60
-# A point is static if another scan, so many scans away, has a point within about a cell of this size [m].
+# A point is static if a scan at least _SCANS_APART scans away has a point within about one cell [m].
 _CELL, _SCANS_APART = 0.3, 5
 
 

@@ -9,7 +9,8 @@ from planar import Pose2, wrap
 from slam_lite.graph.drift import variances_xy
 from slam_lite.graph.pose_graph import Edges, relative_pose
 
-# A step with a larger standard deviation [m] is none: the robot was carried. It counts as so many metres.
+# Standard deviation [m] above which a step means that the robot was carried, and the path length [m] that is
+# assumed for such a step.
 _BREAK_SIGMA, _BREAK_LENGTH = 0.4, 200.0
 
 

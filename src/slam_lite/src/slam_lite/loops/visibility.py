@@ -14,9 +14,10 @@ PosedCloud = Tuple[PointCloud, Pose2]
 
 # Sectors of the circle by which beams are compared.
 _SECTORS = 360
-# A point is seen through if the beams beside it end so much behind it, hit if they end so near to it [m].
+# Distances [m] by which the beams beside a point must end behind it for the point to count as seen through,
+# and within which they must end for it to count as hit.
 _BEHIND, _AT = 0.4, 0.2
-# Points of a segment that are checked, and one of how many scans of the other that checks them.
+# Number of points of a segment that are checked, and step between the scans of the other that check them.
 _MAX_POINTS, _SCAN_STEP = 500, 4
 
 

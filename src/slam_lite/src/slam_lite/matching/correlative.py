@@ -89,8 +89,8 @@ def search_exhaustively(
 
 
 _NEAR_ANGLE_STEP = 0.02
-# Share of a scan that overrules the guess, least number of points (a person may be all that the robot sees),
-# and the chi-square at which half of that is needed.
+# Share of a scan that another pose must gain to replace the guess, least number of points (a person may be
+# all that is in range), and chi-square at which half of that is needed.
 _OVERRULING_SHARE, _OVERRULING_POINTS, _HALF_CHI_SQUARE = 0.15, 12.0, 9.0
 
 
@@ -233,7 +233,7 @@ def search_branch_and_bound(
     return Peak(base_pose, score, is_unique, direction)
 
 
-# Share of the best score from which on a pose elsewhere is a rival.
+# Share of the best score above which a pose elsewhere makes the best one ambiguous.
 _RIVAL_SHARE = 0.9
 _LEVELS = 4
 _COARSE = 2**_LEVELS
@@ -299,7 +299,7 @@ def _coarse_bounds(coarse: np.ndarray, cols: np.ndarray, rows: np.ndarray, cells
     return _bounds_of_many(_phases(coarse), cols, rows, cells)
 
 
-# From so many coarse shifts on it is faster to store their cells side by side.
+# Number of coarse shifts above which it is faster to store their cells side by side.
 _MANY_SHIFTS = 5
 
 
@@ -351,10 +351,10 @@ def _bounds_of_many(phases, cols, rows, cells):
 
 @numba.njit(cache=True, nogil=True)
 def _climb(maxima, bounds, order, cols, rows, cells, min_score, enough, excluded, is_far, direction):
-    """Best (col shift, row shift, angle index) above ``min_score``, and its score, by branch and bound.
+    """Find the best (col shift, row shift, angle index) and its score by branch and bound.
 
-    Poses near the ``excluded`` one, or near the line through it along ``direction``, do not count. Ends early
-    when a score exceeds ``enough``.
+    Only scores above ``min_score`` count. Poses near the ``excluded`` one, or near the line through it along
+    ``direction``, do not count. The search ends early when a score exceeds ``enough``.
     """
     side = bounds.shape[1]
     best, best_score = np.zeros(3, dtype=np.int64), min_score
@@ -401,9 +401,10 @@ def _split(finer, cols, rows, stack, stack_bounds, first):
 
 @numba.njit(cache=True, nogil=True)
 def _is_apart(du, dv, dk, is_far, direction):
-    """Whether poses that differ by (du, dv, dk) are far from each other, also across ``direction``.
+    """Check whether poses that differ by (du, dv, dk) are far from each other, also across ``direction``.
 
-    ``is_far``: from how many cells or angle steps on, and how many of these make a full turn.
+    ``is_far`` holds the least distance in cells and in angle steps, and the number of angle steps of a full
+    turn.
     """
     cells, angles, full_turn = is_far
     along = direction[0] * du + direction[1] * dv

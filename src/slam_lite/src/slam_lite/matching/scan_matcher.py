@@ -109,6 +109,7 @@ class CorrelativeMatcher:
         pass
 
     def match(self, cloud: PointCloud, local_map: LocalMap, prediction: Prediction) -> Match:
+        """Search the window exhaustively and refine the best pose (see ``ScanMatcher.match``)."""
         predicted, variance = prediction.base_pose, prediction.variance
         window = SearchWindow(
             float(np.clip(3.0 * math.sqrt(variance[0]), 0.1, 0.4)),

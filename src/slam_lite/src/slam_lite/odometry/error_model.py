@@ -17,10 +17,10 @@ from slam_lite.config import MapperSettings
 _LEG_DISTANCE, _LEG_TURN, _FLOOR = 0.3, 0.3, 0.005
 # Standard deviations of the bias before anything is learned: rad/m, rad/rad, m/m.
 _PRIOR = np.array([0.01, 0.05, 0.05])
-# Random error as a share of the variance in the settings, at least (at most all of it), and the number of
-# motions that this prior counts as.
+# Least random error as a share of the variance in the settings (the largest is 1), and number of motions that
+# this prior counts as.
 _MIN_SHARE, _PRIOR_COUNT = 0.02, 50.0
-# Errors of more standard deviations are wheel slips, from which nothing is learned.
+# Standard deviations above which an error is a wheel slip, which is excluded from the estimates.
 _SLIP_SIGMAS = 5.0
 
 

@@ -176,7 +176,7 @@ class ThreadSafeMapper:
                     self._has_new_keyframes.wait(timeout=1.0)
 
     def _run_closure_task(self) -> bool:
-        """Whether there was one."""
+        """Run the closure task that is due; return whether there was one."""
         with self._lock:
             mapper = self._mapper
             task = mapper.closure_task() if self._localizer is None else None

@@ -56,7 +56,11 @@ class DwaTrajectorySamples:
         return Trajectory(command, self._poses(best), float(self.scores[best]), self)
 
     def trajectory_points(self) -> np.ndarray:
-        """Points (M, 4) of all valid trajectories: x, y, yaw, score."""
+        """Compute the points of all valid trajectories.
+
+        Returns:
+            (M, 4), rows of x, y, yaw in the local frame, and score.
+        """
         points = [np.empty((0, 4))]
         for i in np.flatnonzero(np.isfinite(self.scores)):
             poses = self._poses(int(i))
@@ -64,7 +68,12 @@ class DwaTrajectorySamples:
         return np.concatenate(points)
 
     def cell_costs(self) -> np.ndarray:
-        """Reachable cells (M, 6): x, y, cells to the plan, cells to its end, cost, weighted sum."""
+        """Compute the costs of all reachable cells.
+
+        Returns:
+            (M, 6), rows of x, y in the local frame, cells to the plan, cells to its end, cost and weighted
+            sum.
+        """
         window, settings, scene = self.window, self.settings, self.scene
         is_reached = np.maximum(scene.path_map, scene.goal_map) < UNREACHABLE
         rows, cols = np.nonzero(is_reached & (scene.costs < INSCRIBED))

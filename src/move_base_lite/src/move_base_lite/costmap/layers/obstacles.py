@@ -54,7 +54,11 @@ class SourceSettings:
 
 @dataclass(frozen=True)
 class ObstacleSettings(LayerSettings):
-    """Parameters of the obstacle layer and its observation sources."""
+    """Parameters of the obstacle layer and its observation sources.
+
+    Attributes:
+        sources: Observation sources.
+    """
 
     track_unknown_space: bool = parameter(
         False,
