@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Sets out, changes its mind, turns round, backs up, and starts with a clean slate."""
+"""Start to drive, cancel, turn round, back up, and clear the costmaps."""
 
 import math
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Follows waypoints, of which one lies in a wall, and tells which were missed."""
+"""Follow waypoints, one of which lies in a wall, and print which were missed."""
 
 from home_service import Commander
 

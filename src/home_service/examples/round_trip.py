@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Drives to a place and back, telling how far it still is."""
+"""Drive to a place and back, printing the remaining distance."""
 
 import time
 

@@ -71,8 +71,8 @@ def test_an_unknown_planner_is_named_and_nothing_is_started(command, tmp_path, m
     monkeypatch.chdir(tmp_path)
     goals = ["--goals", "1 0 0"] if command == "test_navigation" else []
     assert main([command, *goals, "--planner", "MppiPlannerROS"]) == 2
-    told = capsys.readouterr().err
-    assert "no local planner 'MppiPlannerROS'; did you mean move_base_lite/MppiPlannerROS?" in told
+    message = capsys.readouterr().err
+    assert "no local planner 'MppiPlannerROS'; did you mean move_base_lite/MppiPlannerROS?" in message
     assert list(tmp_path.iterdir()) == []
 
 
@@ -88,19 +88,19 @@ def test_an_unknown_option_is_reported_with_the_name_of_the_script(command, caps
     with pytest.raises(SystemExit) as stop:
         main([command, *needed, "--nonsense"])
     assert stop.value.code == 2
-    told = capsys.readouterr().err
-    assert told.startswith(f"usage: {command}.sh ")
-    assert told.endswith(f"{command}.sh: error: unrecognized arguments: --nonsense\n")
+    message = capsys.readouterr().err
+    assert message.startswith(f"usage: {command}.sh ")
+    assert message.endswith(f"{command}.sh: error: unrecognized arguments: --nonsense\n")
 
 
 def test_every_command_has_a_class_with_a_summary_and_a_run_method(capsys):
     with pytest.raises(SystemExit) as stop:
         parse(["--help"])
     assert stop.value.code == 0
-    told = capsys.readouterr().out
+    text = capsys.readouterr().out
     for name in commands.FOLDER.names():
         assert callable(commands.FOLDER.find(name).run)
-        assert f"  {name} " in told
+        assert f"  {name} " in text
 
 
 def test_a_goal_outside_the_map_is_refused_before_anything_is_started(capsys):
@@ -126,9 +126,7 @@ def test_a_run_for_which_too_few_open_files_are_allowed_is_refused_and_leaves_no
         check=False,
     )
     assert run.returncode == 2
-    assert run.stderr == (
-        "error: no more than 64 open files are allowed (ulimit -n), and the nodes need 256\n"
-    )
+    assert run.stderr == ("error: the limit of open files is 64 (ulimit -n), but the nodes need 256\n")
     assert not list(tmp_path.iterdir())
 
 
@@ -138,7 +136,7 @@ from supervision.command_line import option
 
 @dataclass(frozen=True)
 class Greet:
-    \"\"\"Greets somebody.\"\"\"
+    \"\"\"Greets a person.\"\"\"
 
     name: str = option("you", "whom")
 
@@ -168,7 +166,7 @@ def test_a_custom_command_is_called_by_its_dotted_name(own, capsys):
     assert capsys.readouterr().out == "hello robot\n"
     with pytest.raises(SystemExit):
         main(["own_commands.greeting/Greet", "--help"])
-    assert "Greets somebody." in capsys.readouterr().out
+    assert "Greets a person." in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

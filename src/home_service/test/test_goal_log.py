@@ -9,8 +9,8 @@ def test_a_goal_is_logged_when_it_is_sent_and_when_it_is_reached():
     assert log.add("a", "map", Pose2(2.0, 3.0, 0.5)) == "goal 1 (2.00, 3.00, 0.50): on the way"
     line = log.end("a", True, "Goal reached.", Pose2(2.0, 3.04, 0.5))
     assert line == "goal 1 (2.00, 3.00, 0.50): reached, truly 0.040 m from it"
-    told = {"goal": [2.0, 3.0, 0.5], "frame": "map", "outcome": "reached", "error": 0.04}
-    assert log.result_fields() == {"goals": [told]}
+    record = {"goal": [2.0, 3.0, 0.5], "frame": "map", "outcome": "reached", "error": 0.04}
+    assert log.result_fields() == {"goals": [record]}
 
 
 def test_the_reason_of_a_failed_goal_is_logged_and_recorded():

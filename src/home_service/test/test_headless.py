@@ -13,7 +13,7 @@ from sim_bridge.faults import Fault
 MAP = Path(__file__).resolve().parents[3] / "map"
 
 
-def rehearsed(seed, *faults):
+def run_episode(seed, *faults):
     errand = errand_mission(*load_pickup_and_dropoff(MAP / "zones.yaml"))
     world, grid = load_world(MAP / "home.world"), load_map(MAP / "home.yaml")
     stage = (world, robot_named("turtlebot_lidar"), grid, errand)
@@ -21,7 +21,7 @@ def rehearsed(seed, *faults):
 
 
 def test_a_seed_repeats_the_whole_mission_bit_for_bit_and_another_does_not():
-    first, again, other = rehearsed(1001), rehearsed(1001), rehearsed(1002)
+    first, again, other = run_episode(1001), run_episode(1001), run_episode(1002)
     assert first.trajectory_hash == again.trajectory_hash
     assert first.trajectory_hash != other.trajectory_hash
     assert first.verdict.success, first.verdict.reason
@@ -29,19 +29,19 @@ def test_a_seed_repeats_the_whole_mission_bit_for_bit_and_another_does_not():
 
 
 def test_delayed_scans_are_used_at_the_pose_of_their_stamp():
-    run = rehearsed(5, Fault("scan_late", start=8.0, strength=0.5))
+    run = run_episode(5, Fault("scan_late", start=8.0, strength=0.5))
     assert run.verdict.success, run.verdict.reason
 
 
 def test_stopped_odometry_stays_implausible_while_the_robot_is_stopped():
-    run = rehearsed(5001, Fault("odometry_frozen", start=8.0))
+    run = run_episode(5001, Fault("odometry_frozen", start=8.0))
     assert "trustworthy sensor (odometry: it stands still" in run.verdict.reason
     assert run.simulated_seconds < 60.0
 
 
 @pytest.mark.parametrize("seed, start", [(1, 8.0), (1, 8.9), (5002, 8.0), (5013, 8.0)])
 def test_a_robot_that_is_kidnapped_before_it_arrives_reports_no_false_delivery(seed, start):
-    run = rehearsed(seed, Fault("kidnapped", start=start, strength=0.5))
+    run = run_episode(seed, Fault("kidnapped", start=start, strength=0.5))
     assert run.verdict.success, run.verdict.reason
 
 

@@ -1,4 +1,4 @@
-"""A package laid out for somebody's own plugin is one that works as it is."""
+"""A package laid out for a new plugin is one that works as it is."""
 
 import importlib
 import runpy
@@ -31,12 +31,12 @@ def test_every_kind_of_plugin_has_a_template():
 
 @pytest.mark.parametrize("name", ["My Planner", "2fast", "planner-1"])
 def test_an_invalid_package_name_is_refused(name, tmp_path):
-    with pytest.raises(SettingsError, match="is no name of a package"):
+    with pytest.raises(SettingsError, match="is no package name"):
         NewPlugin(name, "local_planner", tmp_path).run()
     assert not list(tmp_path.iterdir())
 
 
 def test_nothing_is_overwritten(tmp_path):
     NewPlugin("mine", "local_planner", tmp_path).run()
-    with pytest.raises(SettingsError, match="is there already"):
+    with pytest.raises(SettingsError, match="exists already"):
         NewPlugin("mine", "local_planner", tmp_path).run()

@@ -1,4 +1,4 @@
-"""What docs/how_to/use_without_ros.md tells people to type works as it is written."""
+"""The example of the page about one process works as printed."""
 
 import os
 import subprocess

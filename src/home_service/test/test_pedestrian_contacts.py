@@ -1,4 +1,4 @@
-"""Who ran into whom: the robot answers for what it drives into, not for who walks into it."""
+"""The robot is at fault for what it drives into, not for pedestrians that walk into it."""
 
 from types import SimpleNamespace
 
@@ -11,7 +11,7 @@ from planar import Pose2, Twist2
 
 def met(robot_v, person_v, yaw=0.0):
     """A robot at the origin that touches a person on its x axis; velocities along x. The names held
-    against it, and those of who ran into it."""
+    against it, and those of pedestrians at fault."""
     rows = np.array([[0.38, 0.0, person_v, 0.0, 0.2]])
     crowd = SimpleNamespace(links=("anna::link",), rows=rows)
     pedestrians = PedestrianContacts(SimpleNamespace(scene=SimpleNamespace(crowd=crowd)))

@@ -1,4 +1,4 @@
-"""What is known of the run that a bag was recorded in, whatever its result.json says."""
+"""Launch arguments of a recording, whatever the result.json of its run contains."""
 
 import json
 import os
@@ -14,7 +14,7 @@ def run_folder(tmp_path):
     return tmp_path
 
 
-def told_of(run_folder):
+def arguments_of(run_folder):
     arguments = recording_plan([run_folder / "bags" / "run.bag"]).arguments
     return {name: value for name, value in arguments.items() if name not in ("bags", "stays")}
 
@@ -23,7 +23,7 @@ def test_the_world_and_the_robot_are_those_of_the_run(run_folder):
     world = run_folder / "some.world"
     world.touch()
     (run_folder / "result.json").write_text(json.dumps({"world": str(world), "robot": "turtlebot3_burger"}))
-    assert told_of(run_folder) == {"world_file": str(world), "robot": "turtlebot3_burger"}
+    assert arguments_of(run_folder) == {"world_file": str(world), "robot": "turtlebot3_burger"}
 
 
 @pytest.mark.parametrize(
@@ -41,9 +41,9 @@ def test_the_world_and_the_robot_are_those_of_the_run(run_folder):
 )
 def test_unusable_results_are_ignored(run_folder, content):
     (run_folder / "result.json").write_text(content)
-    assert told_of(run_folder) == {}
+    assert arguments_of(run_folder) == {}
 
 
 def test_a_pipe_is_not_waited_for(run_folder):
     os.mkfifo(run_folder / "result.json")
-    assert told_of(run_folder) == {}
+    assert arguments_of(run_folder) == {}

@@ -1,4 +1,4 @@
-"""Of series that go on for ever no more is kept than is said."""
+"""A series of samples stays small, however long it becomes."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""A robot does not claim to have arrived where it is not, and does not despair where it is."""
+"""Arrivals are accepted only where the scans fit the map."""
 
 from pick_objects import ArrivalCheck, GoalFailed, GoalReached, RecentScanFit, ResendGoal, RobotDisplaced
 from planar import Pose2
@@ -44,7 +44,7 @@ def test_the_outcome_of_a_goal_that_was_not_reached_is_passed_on():
 
 
 def resent(standing=GOOD, found=NEAR):
-    """An arrival at which the robot has stood, with that fit, and set out again from ``found``."""
+    """An arrival after standing with a fit of ``standing`` and a new start at ``found``."""
     arrival = ArrivalCheck(GOAL)
     assert arrival.check(GoalReached(), GOAL, BAD, 5.0) is None
     assert arrival.check(None, GOAL, BAD, 5.9) is None
@@ -53,8 +53,8 @@ def resent(standing=GOOD, found=NEAR):
     return arrival
 
 
-def is_rejected(told):
-    return isinstance(told, GoalFailed) and "does not fit the map" in told.reason
+def is_rejected(outcome):
+    return isinstance(outcome, GoalFailed) and "does not fit the map" in outcome.reason
 
 
 def test_after_a_scan_that_does_not_fit_the_robot_stands_and_the_goal_is_sent_again():
@@ -74,5 +74,5 @@ def test_a_second_arrival_is_rejected_if_scans_contradict_a_pose_far_away_or_nev
 def test_a_clock_that_is_set_back_does_not_stop_the_robot_for_ever():
     arrival = ArrivalCheck(GOAL)
     arrival.check(GoalReached(), GOAL, BAD, 1000.0)
-    told = [arrival.check(None, GOAL, GOOD, 0.1 * tick) for tick in range(12)]
-    assert ResendGoal() in told
+    outcomes = [arrival.check(None, GOAL, GOOD, 0.1 * tick) for tick in range(12)]
+    assert ResendGoal() in outcomes

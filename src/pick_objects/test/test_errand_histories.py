@@ -123,11 +123,11 @@ class ErrandHistories(RuleBasedStateMachine):
 
     @rule()
     def the_node_dies_and_is_respawned(self):
-        told = self.errand.progress, self.errand.object_locations
+        locations = self.errand.object_locations
         again = resume_errand(self.errand.mission, json.loads(json.dumps(checkpoint_of(self.errand))))
         assert again is not None
         self.errand, self.goal = again, None
-        assert self.errand.object_locations == told[1]
+        assert self.errand.object_locations == locations
         was, self.end = self.end, None
         if was is not None:
             self.advance()

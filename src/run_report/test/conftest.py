@@ -15,7 +15,7 @@ from run_report import (
 
 @pytest.fixture
 def record():
-    """A robot that drives 4 m to the east in 8 s, 2 cm north of where it believes to be."""
+    """A robot that drives 4 m to the east in 8 s, 2 cm north of its estimate."""
     stamps = np.linspace(0.0, 8.0, 81)
     zero = np.zeros_like(stamps)
     truth = np.column_stack([stamps, 1.0 + 0.5 * stamps, 2.0 + zero, zero])
@@ -34,7 +34,7 @@ def record():
             MarkerEvent(6.0, "parcel 0", False, 5.0, 2.0),
         ],
         collisions=[CollisionEvent(3.0, "sofa")],
-        warnings=[LoggedWarning(1.0, "amcl", "no <scan> & no hope")],
+        warnings=[LoggedWarning(1.0, "amcl", "no <scan> & no map")],
         zones=[ZoneRecord("pickup", 5.0, 2.0, 0.0, 0.35)],
         grid=grid_from_picture("########\n#......#\n#...?..#\n########"),
     )

@@ -46,7 +46,7 @@ class Page(HTMLParser):
 def test_the_page_is_whole_and_loads_nothing(record, result):
     page = Page(report_html(result, record))
     assert page.loaded and all(address.startswith("data:") for address in page.loaded)
-    assert "no <scan> & no hope" in page.text
+    assert "no <scan> & no map" in page.text
     assert "0.012 m" in page.text
     assert "picking up <now>" in page.text
 

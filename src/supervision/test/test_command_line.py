@@ -11,7 +11,7 @@ from supervision.command_line import argument, option, parse
 class Wash:
     """Washes the dishes.
 
-    Not told by --help.
+    Not shown by --help.
     """
 
     dishes: Tuple[Path, ...] = argument("what to wash", type=Path, nargs="+", metavar="DISH")
@@ -45,8 +45,8 @@ def test_an_unknown_option_ends_the_process_with_the_name_of_the_script(capsys):
 def test_help_shows_the_first_line_and_the_defaults(capsys):
     with pytest.raises(SystemExit):
         parse(Wash, ["--help"], "wash.sh")
-    told = capsys.readouterr().out
-    assert "Washes the dishes." in told
-    assert "for each (default: 5.0)" in told
-    assert "Not told" not in told
-    assert "a cloth\n" in told
+    text = capsys.readouterr().out
+    assert "Washes the dishes." in text
+    assert "for each (default: 5.0)" in text
+    assert "Not shown" not in text
+    assert "a cloth\n" in text

@@ -1,4 +1,4 @@
-"""A program that lives in a child of a fork server cannot tell, nor can who has started it."""
+"""A program in a child of the preloaded process behaves as in its client, and so does the client."""
 
 import array
 import json
@@ -20,7 +20,7 @@ SECONDS = 10.0
 PROGRAM = """
 import os, random, signal, sys, time
 IMPORTED_BY = os.getpid()
-def tell(text):
+def report(text):
     where = "here" if IMPORTED_BY == os.getpid() else "forked"
     print(where, text, os.environ["WORD"], os.getcwd(), *sys.argv[1:], sys.stdin.read(), flush=True)
     print("to stderr", file=sys.stderr)
@@ -91,9 +91,9 @@ def start(name, *call, words=(), **options):
 def test_a_forked_child_has_the_clients_command_line_environment_folder_streams_and_exit_code(
     server, tmp_path
 ):
-    process = start(server[1], "program:tell", "told", words=["text"], cwd=tmp_path)
+    process = start(server[1], "program:report", "called", words=["text"], cwd=tmp_path)
     out, error = process.communicate("typed", timeout=SECONDS)
-    assert out == f"forked told word {tmp_path} text typed\n"
+    assert out == f"forked called word {tmp_path} text typed\n"
     assert error == "to stderr\n"
     assert process.returncode == 7
 
@@ -121,7 +121,7 @@ def test_a_child_starts_only_when_signals_are_forwarded(server, tmp_path):
         "folder": str(tmp_path),
     }
     reading, writing = os.pipe()
-    with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as client, os.fdopen(reading) as told:
+    with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as client, os.fdopen(reading) as output:
         client.settimeout(SECONDS)
         client.connect(f"\0{server[1]}")
         streams = array.array("i", [0, writing, 2])
@@ -129,9 +129,9 @@ def test_a_child_starts_only_when_signals_are_forwarded(server, tmp_path):
         os.close(writing)
         child = psutil.Process(int(client.recv(100)))
         time.sleep(0.2)
-        assert child.is_running() and not select.select([told], [], [], 0.0)[0]
+        assert child.is_running() and not select.select([output], [], [], 0.0)[0]
         client.close()
-        assert told.read() == ""
+        assert output.read() == ""
         wait_until(lambda: has_ended(child))
 
 
@@ -182,11 +182,11 @@ def test_each_child_draws_different_random_numbers(server):
 
 
 def test_malformed_and_missing_requests_do_not_end_the_server(server):
-    for said in (b"nonsense", b"[1]", None):
+    for answer in (b"nonsense", b"[1]", None):
         with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as client:
             client.connect(f"\0{server[1]}")
-            if said is not None:
-                client.send(said)
+            if answer is not None:
+                client.send(answer)
                 client.settimeout(SECONDS)
                 assert client.recv(100) == b""
     assert start(server[1], "program:draw").communicate(timeout=SECONDS)[0] != "alone\n"

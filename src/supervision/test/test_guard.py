@@ -13,7 +13,7 @@ import psutil
 import pytest
 
 MARK = "GUARD_TEST"
-# Far from what an end takes: they only tell it from none.
+# Much longer than an end takes, so that it is distinguished from none.
 LEFT_SECONDS, START_SECONDS = 30.0, 30.0
 PATIENCE_SECONDS, LONG_PATIENCE_SECONDS = 3.0, 20.0
 STARTER = """
@@ -29,7 +29,7 @@ from supervision.guard import run_guarded
 patience, *command = sys.argv[1:]
 sys.exit(run_guarded(command, float(patience)))
 """
-# As roslaunch while it starts a node: deaf, with children in sessions of their own, some of them stubborn.
+# As roslaunch while it starts a node: ignores signals, with children in separate sessions.
 STUBBORN = "trap '' INT TERM; while true; do sleep 0.05; done"
 DEAF_PARENT = f'trap "" INT TERM; for i in 1 2 3 4 5; do setsid bash -c "{STUBBORN}" & sleep 0.05; done; wait'
 
@@ -72,7 +72,7 @@ def processes_of(mark):
 def seconds_until(is_so, most):
     started = time.monotonic()
     while not is_so():
-        assert time.monotonic() - started < most, "in vain"
+        assert time.monotonic() - started < most, "without success"
         time.sleep(0.02)
     return time.monotonic() - started
 
@@ -89,14 +89,14 @@ def test_nothing_outlives_a_parent_that_is_killed_at_any_moment(mark):
 
 
 def test_a_guard_that_is_asked_to_end_interrupts_its_command_first(mark, tmp_path):
-    told, ready = tmp_path / "told", tmp_path / "ready"
-    hearing = f"trap 'echo INT > {told}; exit 3' INT; touch {ready}; while true; do sleep 0.05; done"
-    starter = start(mark, "bash", "-c", hearing)
+    log, ready = tmp_path / "log", tmp_path / "ready"
+    signalling = f"trap 'echo INT > {log}; exit 3' INT; touch {ready}; while true; do sleep 0.05; done"
+    starter = start(mark, "bash", "-c", signalling)
     seconds_until(ready.exists, START_SECONDS)
     guard = psutil.Process(starter.pid).children()[0]
     guard.terminate()
     assert starter.wait(LEFT_SECONDS) == 3
-    assert told.read_text() == "INT\n"
+    assert log.read_text() == "INT\n"
 
 
 def test_ctrl_c_is_for_the_command(mark):
@@ -119,8 +119,8 @@ def test_what_a_command_leaves_behind_is_ended(mark):
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP, signal.SIGINT])
 def test_run_guarded_waits_for_the_end_of_the_command(mark, number):
-    hearing = "trap 'sleep 2.5; exit 3' INT; trap '' HUP; echo ready; while true; do sleep 0.05; done"
-    starter = start_waiting(mark, LONG_PATIENCE_SECONDS, "bash", "-c", hearing)
+    signalling = "trap 'sleep 2.5; exit 3' INT; trap '' HUP; echo ready; while true; do sleep 0.05; done"
+    starter = start_waiting(mark, LONG_PATIENCE_SECONDS, "bash", "-c", signalling)
     assert starter.stdout.readline() == b"ready\n"
     starter.send_signal(number)
     assert starter.wait(LEFT_SECONDS) == 3
@@ -130,15 +130,15 @@ def test_run_guarded_waits_for_the_end_of_the_command(mark, number):
 def test_a_guarded_command_that_is_terminated_as_it_starts_returns_its_own_code(mark):
     moments = random.Random(2)
     codes = set()
-    hearing = "trap 'exit 3' INT; while true; do sleep 0.02; done"
+    signalling = "trap 'exit 3' INT; while true; do sleep 0.02; done"
     for _ in range(12):
-        starter = start_waiting(mark, PATIENCE_SECONDS, "bash", "-c", hearing)
+        starter = start_waiting(mark, PATIENCE_SECONDS, "bash", "-c", signalling)
         seconds_until(lambda: psutil.Process(starter.pid).children(), START_SECONDS)  # noqa: B023
         time.sleep(moments.uniform(0.0, 0.15))
         starter.terminate()
         codes.add(starter.wait(LEFT_SECONDS))
         seconds_until(lambda: not processes_of(mark), LEFT_SECONDS)
-    # Its own end, or that of the guard or of the command before either could hear.
+    # Its own end, or that of the guard or of the command before either had a handler.
     assert codes <= {3, 128 + signal.SIGTERM, 128 + signal.SIGINT}, codes
 
 

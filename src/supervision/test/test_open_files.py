@@ -14,7 +14,7 @@ print(*resource.getrlimit(resource.RLIMIT_NOFILE))
 
 
 def limits_after(soft, hard):
-    """What is allowed after the check, or what it raises, in a process of its own."""
+    """What is allowed after the check, or what it raises; runs in a separate process."""
     run = subprocess.run(
         [sys.executable, "-c", SCRIPT.format(soft=soft, hard=hard)],
         env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
@@ -36,5 +36,5 @@ def test_a_low_limit_is_raised_as_far_as_the_system_lets_it(before, after):
 
 @pytest.mark.parametrize("hard", [64, 128, 255])
 def test_a_limit_that_is_too_low_is_refused(hard):
-    complaint = f"no more than {hard} open files are allowed (ulimit -n), and the nodes need 256"
+    complaint = f"the limit of open files is {hard} (ulimit -n), but the nodes need 256"
     assert limits_after(hard // 2, hard).endswith(complaint)

@@ -27,12 +27,12 @@ DEADLINE = 20.0
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_taken_by_another_thread_wakes_a_waiting_main_thread(number):
     command = [sys.executable, "-c", WAITING]
-    for _ in range(8):  # one in four was not heard
+    for _ in range(8):  # one in four was not received
         with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
             assert process.stdout.readline() == b"waits\n"
             process.send_signal(number)
             try:
-                _, told = process.communicate(timeout=DEADLINE)
+                _, output = process.communicate(timeout=DEADLINE)
             finally:
                 process.kill()
-            assert b"RunInterruptedError" in told
+            assert b"RunInterruptedError" in output

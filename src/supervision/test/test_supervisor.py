@@ -11,7 +11,7 @@ from supervision.node_exits import NodeFailure
 from supervision.ros import supervisor
 from supervision.ros.supervisor import Supervisor
 
-# Ctrl-C is heard in the midst of the start: there is a process, but nobody has been told of it.
+# Ctrl-C arrives during the start: there is a process, but the graph has no reference to it yet.
 INTERRUPTED = """
 import subprocess, sys
 from pathlib import Path
@@ -134,5 +134,5 @@ def test_the_end_of_the_graph_is_explained_after_an_interrupt_too(graph, tmp_pat
 
 def test_a_graph_whose_start_is_interrupted_ends_too(tmp_path):
     command = [sys.executable, "-c", INTERRUPTED, str(tmp_path)]
-    told = subprocess.run(command, stdout=subprocess.PIPE, text=True)
-    assert told.stdout.splitlines() == ["interrupted with 1", "ended with 0"]
+    result = subprocess.run(command, stdout=subprocess.PIPE, text=True)
+    assert result.stdout.splitlines() == ["interrupted with 1", "ended with 0"]

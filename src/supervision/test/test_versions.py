@@ -1,4 +1,4 @@
-"""What a run folder tells of the software and the machine that made it."""
+"""Versions of the software and the machine in a run folder."""
 
 from datetime import date
 
@@ -26,16 +26,16 @@ CPU part\t: 0xd0c
 
 
 @pytest.mark.parametrize(
-    "cpuinfo, told",
+    "cpuinfo, expected",
     [
         (X86, "Intel(R) Xeon(R) CPU @ 2.00GHz family 6 model 85 avx512f"),
         (X86.replace(" avx512f", ""), "Intel(R) Xeon(R) CPU @ 2.00GHz family 6 model 85 avx2"),
         (ARM, "implementer 0x41 part 0xd0c asimd"),
     ],
 )
-def test_the_processor_is_named_with_its_widest_vector_unit(tmp_path, cpuinfo, told):
+def test_the_processor_is_named_with_its_widest_vector_unit(tmp_path, cpuinfo, expected):
     (tmp_path / "cpuinfo").write_text(cpuinfo)
-    assert processor(tmp_path / "cpuinfo") == told
+    assert processor(tmp_path / "cpuinfo") == expected
 
 
 @pytest.mark.parametrize("content", [None, "", "no colon here\n"])

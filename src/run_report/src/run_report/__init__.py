@@ -1,4 +1,4 @@
-"""What a run leaves behind to look at: a page, a picture, an animation, trajectories. No ROS."""
+"""Report of a run: HTML page, picture, animation and trajectories. No ROS."""
 
 from run_report.figures import summary
 from run_report.record import (

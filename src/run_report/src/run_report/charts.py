@@ -1,4 +1,4 @@
-"""Lines over time and the timeline of states, as HTML that follows the width of the page."""
+"""Charts over time and the timeline of states, as responsive HTML."""
 
 import math
 from html import escape
@@ -13,7 +13,13 @@ HEIGHT = 100.0
 
 
 class ChartLine(NamedTuple):
-    """One line of a chart: ``rows`` (N, 2) stamp and value."""
+    """A line of a chart.
+
+    Attributes:
+        name: Legend; empty: none.
+        kind: CSS class.
+        rows: (N, 2), stamp and value.
+    """
 
     name: str
     kind: str
@@ -21,7 +27,7 @@ class ChartLine(NamedTuple):
 
 
 def chart(title: str, unit: str, lines: Sequence[ChartLine], end: float) -> str:
-    """A chart over 0..end seconds; nothing if there is nothing to show."""
+    """Return a chart over 0..end seconds; empty without data."""
     lines = [line for line in lines if len(line.rows)]
     if not lines or end <= 0.0:
         return ""
@@ -54,7 +60,7 @@ def chart(title: str, unit: str, lines: Sequence[ChartLine], end: float) -> str:
 
 
 def timeline(states: Sequence[StateEvent], end: float) -> str:
-    """A bar of states over 0..end seconds, and what its colours mean."""
+    """Return a bar of states over 0..end seconds with a legend."""
     if not states or end <= 0.0:
         return ""
     names = list(dict.fromkeys(state.name for state in states))
@@ -86,7 +92,7 @@ def time_labels(end: float) -> str:
 
 
 def nice_ticks(low: float, high: float, most: int = 4) -> List[float]:
-    """Round numbers, evenly spaced, from at most ``low`` to at least ``high``."""
+    """Return evenly spaced round numbers from at most ``low`` to at least ``high``."""
     span = max(high - low, 1e-3)
     rough = span / most
     power = 10.0 ** math.floor(math.log10(rough))

@@ -1,4 +1,4 @@
-"""Two runs side by side."""
+"""Comparison of two runs."""
 
 import json
 from html import escape
@@ -18,7 +18,7 @@ INPUTS = ("seed", "speed", "world", "map", "mission", "robot")
 
 
 class LoadedRun(NamedTuple):
-    """What a run left in its folder."""
+    """Content of a run folder."""
 
     folder: Path
     result: Dict[str, Any]
@@ -26,7 +26,7 @@ class LoadedRun(NamedTuple):
 
 
 class ComparisonRow(NamedTuple):
-    """A figure of both runs, as people read it; empty where a run has none."""
+    """A figure of both runs as text; empty where a run has none."""
 
     name: str
     first: str
@@ -34,7 +34,11 @@ class ComparisonRow(NamedTuple):
 
 
 def load_run(folder: Path) -> LoadedRun:
-    """The result and the record of a run folder. Raises RecordError."""
+    """Read result and record of a run folder.
+
+    Raises:
+        RecordError: If one is missing or broken.
+    """
     path = folder / RESULT_FILE
     try:
         result = json.loads(read_text(path))
@@ -52,7 +56,7 @@ def load_run(folder: Path) -> LoadedRun:
 
 
 def compared_figures(first: LoadedRun, second: LoadedRun) -> List[ComparisonRow]:
-    """The figures of both runs, and those inputs and versions that differ between them."""
+    """Return the figures of both runs, and the inputs and versions that differ."""
     rows = [ComparisonRow("outcome", *(_outcome(run) for run in (first, second)))]
     shown = [dict(figures(run.result)) for run in (first, second)]
     rows += [
@@ -68,7 +72,7 @@ def compared_figures(first: LoadedRun, second: LoadedRun) -> List[ComparisonRow]
 
 
 def comparison_html(first: LoadedRun, second: LoadedRun) -> str:
-    """A page like that of a single run, with both in every chart."""
+    """Return a page with both runs in every chart."""
     runs = (first, second)
     end = max(run.record.end for run in runs)
     heads = "".join(f'<th><span class="key {kind}">{kind.upper()}</span></th>' for kind in KINDS)

@@ -1,4 +1,4 @@
-"""Figures of a run, from its record."""
+"""Figures of a run, computed from its record."""
 
 from typing import Any, Dict
 
@@ -11,7 +11,11 @@ MATCH_SECONDS = 0.01
 
 
 def localization_errors(record: RunRecord) -> np.ndarray:
-    """(N, 3) stamp, metres, radians between estimate and truth of the same moment."""
+    """Return errors of the estimate where there is a true pose of the same stamp.
+
+    Returns:
+        (N, 3), stamp, position error [m], heading error [rad].
+    """
     if not len(record.truth) or not len(record.estimate):
         return np.zeros((0, 3))
     later = np.searchsorted(record.truth[:, 0], record.estimate[:, 0] - MATCH_SECONDS)
@@ -24,7 +28,7 @@ def localization_errors(record: RunRecord) -> np.ndarray:
 
 
 def real_time_factors(record: RunRecord, window: float = 1.0) -> np.ndarray:
-    """(N, 2) stamp, simulated per wall-clock second over the last ``window`` wall-clock seconds."""
+    """Return (N, 2): stamp and simulated per wall-clock time over the last ``window`` wall-clock seconds."""
     if len(record.pace) < 2:
         return np.zeros((0, 2))
     simulated, wall = record.pace.T
@@ -35,7 +39,7 @@ def real_time_factors(record: RunRecord, window: float = 1.0) -> np.ndarray:
 
 
 def summary(record: RunRecord) -> Dict[str, Any]:
-    """What result.json holds of a record; nothing of what was not seen."""
+    """Return the fields of result.json that are computed from a record."""
     errors = localization_errors(record)[:, 1]
     figures: Dict[str, Any] = {"warnings": len(record.warnings)}
     if len(errors):

@@ -1,4 +1,4 @@
-"""Maps as pictures."""
+"""Images of maps."""
 
 import base64
 import io
@@ -13,7 +13,7 @@ MARGIN = 0.3
 
 
 def view_of(grid: OccupancyGrid, points_xy: np.ndarray) -> Tuple[float, float, float, float]:
-    """x_min, y_min, x_max, y_max of what is known of a map and of the points (N, 2), with a margin."""
+    """Return x_min, y_min, x_max, y_max of the known cells of a map and of points (N, 2), with a margin."""
     corners = [points_xy] if len(points_xy) else []
     known = np.argwhere(grid.cells != UNKNOWN)
     if len(known):
@@ -26,7 +26,7 @@ def view_of(grid: OccupancyGrid, points_xy: np.ndarray) -> Tuple[float, float, f
 
 
 def grid_image(grid: OccupancyGrid, occupied, free, unknown) -> Image.Image:
-    """The cells as RGBA pixels of the given colours, highest row first."""
+    """Return the cells as RGBA pixels in the given colours, highest row first."""
     shares = np.clip(grid.cells, 0, OCCUPIED)[..., None] / OCCUPIED
     pixels = np.array(free) * (1.0 - shares) + np.array(occupied) * shares
     pixels[grid.cells == UNKNOWN] = unknown

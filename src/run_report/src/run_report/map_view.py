@@ -1,4 +1,4 @@
-"""The map of a run with everything that moved on it, as SVG in metres."""
+"""Map of a run with trajectories, goals and objects, as SVG in metres."""
 
 import math
 from html import escape
@@ -15,9 +15,11 @@ WALL, FREE, UNKNOWN = (38, 42, 51, 255), (0, 0, 0, 0), (128, 134, 148, 70)
 
 
 def map_svg(record: RunRecord, above: str = "") -> str:
-    """An SVG element of class ``map``; y points up as in the map frame, by way of negated coordinates.
+    """Return an SVG element of class ``map``; y coordinates are negated, so that y points up.
 
-    ``above``: SVG that is drawn over it.
+    Args:
+        record: Record of the run.
+        above: SVG drawn on top.
     """
     points_xy = np.concatenate([record.truth[:, 1:3], record.estimate[:, 1:3], _zone_corners(record)])
     grid = record.grid or OccupancyGrid(np.full((1, 1), -1, dtype=np.int8), 0.05)
@@ -43,7 +45,7 @@ def map_svg(record: RunRecord, above: str = "") -> str:
 
 
 def thinned(rows: np.ndarray, most: int = MAX_POINTS) -> np.ndarray:
-    """At most ``most`` of the rows, evenly chosen, the first and the last among them."""
+    """Return at most ``most`` rows, evenly spaced, including the first and the last."""
     if len(rows) <= most:
         return rows
     return rows[np.linspace(0, len(rows) - 1, most).round().astype(int)]
@@ -118,7 +120,7 @@ def _collisions(record: RunRecord, unit: float) -> List[str]:
 
 
 def _robot(record: RunRecord, unit: float) -> str:
-    """The robot where it was last; the script moves it."""
+    """Return the robot at its last pose; the script moves it."""
     if not len(record.truth):
         return ""
     _, x, y, yaw = record.truth[-1]
@@ -126,7 +128,7 @@ def _robot(record: RunRecord, unit: float) -> str:
 
 
 def _objects(record: RunRecord, unit: float) -> List[str]:
-    """Every object that a marker ever showed, where it was last; the script moves them."""
+    """Return every object that was shown by a marker at its last pose; the script moves them."""
     latest = {marking.name: marking for marking in record.markings}
     return [
         f'<rect class="object" data-name="{escape(marking.name)}" x="{-unit:.3f}" y="{-unit:.3f}" '

@@ -1,4 +1,4 @@
-"""The report of a run: one HTML file that asks nobody for anything."""
+"""Report of a run: one self-contained HTML file."""
 
 import json
 from html import escape
@@ -14,12 +14,12 @@ from run_report.record import RunRecord
 
 HERE = Path(__file__).resolve().parent
 PLAYED_POSES = 1200
-# The browser itself refuses whatever is not in the file.
+# The browser refuses everything that is not in the file.
 POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
 
 
 def report_html(result: Mapping[str, Any], record: RunRecord) -> str:
-    """The page for what result.json says and what was recorded."""
+    """Return the page for a result and a record."""
     return document(
         f"{result.get('command', 'run')}, seed {result.get('seed', '?')}",
         _header(result)
@@ -35,7 +35,7 @@ def report_html(result: Mapping[str, Any], record: RunRecord) -> str:
 
 
 def document(title: str, body: str, script: str = "") -> str:
-    """A whole page around ``body``."""
+    """Return a complete page around ``body``."""
     style = (HERE / "page.css").read_text(encoding="utf-8")
     return (
         f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
@@ -46,7 +46,7 @@ def document(title: str, body: str, script: str = "") -> str:
 
 
 def figures(result: Mapping[str, Any]) -> List[Tuple[str, str]]:
-    """Names and values of what matters most, as people read them; only what the result holds."""
+    """Return names and values of the most important figures in a result, as text."""
     error = result.get("localization_error", {})
     rows: List[Tuple[str, Any, str]] = [
         ("simulated", result.get("simulated_seconds"), "{:.1f} s"),
@@ -85,7 +85,7 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
 
 
 def charts(record: RunRecord) -> str:
-    """Timeline, localization error, speed and pace of a run."""
+    """Return timeline, localization error, speed and real-time factor of a run."""
     errors, end = localization_errors(record), record.end
     return (
         timeline(record.states, end)

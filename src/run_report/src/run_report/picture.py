@@ -1,4 +1,4 @@
-"""A run as a picture and as an animation, drawn with Pillow."""
+"""Picture and animation of a run, drawn with Pillow."""
 
 import math
 from typing import Any, Iterator, List, Mapping, Sequence, Tuple
@@ -18,65 +18,80 @@ TRUTH, ESTIMATE, ODOMETRY = (37, 99, 235, 255), (232, 89, 12, 255), (152, 162, 1
 ZONE, OBJECT, GOAL = (124, 58, 237, 255), (217, 119, 6, 255), (193, 21, 116, 255)
 SIGHT = (37, 99, 235, 40)
 COLOURS = (WALL, UNKNOWN, TRUTH, ESTIMATE, ZONE, OBJECT, GOAL)
-FINER = 2  # drawn so many times larger than shown, for smooth edges
+SUPERSAMPLING = 2  # for smooth edges
 ROBOT_RADIUS = 0.18
 SIGHT_RANGE = 6.0
 BEAMS = 180
 
 
 class MapCanvas:
-    """A map to draw on in metres; the pixels shown are ``width`` wide."""
+    """A map to draw on in metres.
+
+    Args:
+        grid: The map.
+        points_xy: (N, 2), further points that must be visible.
+        width: Width of the shown picture [px].
+        header: Height of the header [px].
+    """
 
     def __init__(self, grid: OccupancyGrid, points_xy: np.ndarray, width: int, header: int):
         x_min, y_min, x_max, y_max = view_of(grid, points_xy)
-        self._scale = FINER * width / (x_max - x_min)
-        self._x_min, self._y_max, self._top = x_min, y_max, FINER * header
+        self._scale = SUPERSAMPLING * width / (x_max - x_min)
+        self._x_min, self._y_max, self._top = x_min, y_max, SUPERSAMPLING * header
         self._width = width
-        size = (FINER * width, self._top + round((y_max - y_min) * self._scale))
+        size = (SUPERSAMPLING * width, self._top + round((y_max - y_min) * self._scale))
         self.image = Image.new("RGBA", size, PAPER)
         self._paste(grid)
 
     def copy(self) -> "MapCanvas":
-        """A canvas with the same content, to draw something else on."""
-        twin = object.__new__(MapCanvas)
-        twin.__dict__.update(self.__dict__)
-        twin.image = self.image.copy()
-        return twin
+        """Return a canvas with the same content."""
+        clone = object.__new__(MapCanvas)
+        clone.__dict__.update(self.__dict__)
+        clone.image = self.image.copy()
+        return clone
 
     def path(self, points_xy: np.ndarray, colour: Colour, width: float) -> None:
-        """A line through the points (N, 2); width in pixels shown."""
+        """Draw a line through points (N, 2); the width is in shown pixels."""
         if len(points_xy) > 1:
             pixels = [tuple(pixel) for pixel in self._pixels(points_xy)]
-            ImageDraw.Draw(self.image).line(pixels, fill=colour, width=round(width * FINER), joint="curve")
+            ImageDraw.Draw(self.image).line(
+                pixels, fill=colour, width=round(width * SUPERSAMPLING), joint="curve"
+            )
 
     def area(self, points_xy: np.ndarray, colour: Colour) -> None:
-        """A see-through polygon."""
+        """Draw a translucent polygon."""
         layer = Image.new("RGBA", self.image.size)
         ImageDraw.Draw(layer).polygon([tuple(pixel) for pixel in self._pixels(points_xy)], fill=colour)
         self.image.alpha_composite(layer)
 
     def disc(self, x: float, y: float, radius: float, fill=None, outline=None) -> None:
-        """A disc of a radius in metres."""
+        """Draw a disc; the radius is in metres."""
         (u, v), reach = self._pixels(np.array([[x, y]]))[0], radius * self._scale
         box = (u - reach, v - reach, u + reach, v + reach)
-        ImageDraw.Draw(self.image).ellipse(box, fill=fill, outline=outline, width=2 * FINER)
+        ImageDraw.Draw(self.image).ellipse(box, fill=fill, outline=outline, width=2 * SUPERSAMPLING)
 
     def label(self, x: float, y: float, text: str, colour: Colour) -> None:
-        """Text whose foot is centred at a point of the map."""
+        """Draw text whose bottom centre is at a point of the map."""
         u, v = self._pixels(np.array([[x, y]]))[0]
         draw = ImageDraw.Draw(self.image)
         draw.text(
-            (u, v), text, fill=colour, font=_font(13), anchor="mb", stroke_width=2 * FINER, stroke_fill=PAPER
+            (u, v),
+            text,
+            fill=colour,
+            font=_font(13),
+            anchor="mb",
+            stroke_width=2 * SUPERSAMPLING,
+            stroke_fill=PAPER,
         )
 
     def write(self, left: float, top: float, text: str, colour: Colour, size: int) -> float:
-        """Text in the header, in pixels shown; returns where it ends."""
+        """Write text into the header, in shown pixels; return its right edge."""
         draw, font = ImageDraw.Draw(self.image), _font(size)
-        draw.text((left * FINER, top * FINER), text, fill=colour, font=font)
-        return left + draw.textlength(text, font=font) / FINER
+        draw.text((left * SUPERSAMPLING, top * SUPERSAMPLING), text, fill=colour, font=font)
+        return left + draw.textlength(text, font=font) / SUPERSAMPLING
 
     def shown(self) -> Image.Image:
-        """The picture at the size that it is shown at."""
+        """Return the picture in the size in which it is shown."""
         height = round(self.image.height * self._width / self.image.width)
         return self.image.convert("RGB").resize((self._width, height), Image.Resampling.LANCZOS)
 
@@ -98,8 +113,8 @@ class MapCanvas:
 
 
 def run_picture(result: Mapping[str, Any], record: RunRecord, width: int = 900) -> Image.Image:
-    """The map with all paths, the zones and the verdict."""
-    canvas = _stage(record, width, header=78)
+    """Return the map with all trajectories, the zones and the verdict."""
+    canvas = _background(record, width, header=78)
     canvas.path(thinned(record.odometry[:, 1:3]), ODOMETRY, 1.5)
     canvas.path(thinned(record.truth[:, 1:3]), TRUTH, 5.0)
     canvas.path(thinned(record.estimate[:, 1:3]), ESTIMATE, 2.0)
@@ -128,25 +143,25 @@ def run_picture(result: Mapping[str, Any], record: RunRecord, width: int = 900) 
 def run_frames(
     result: Mapping[str, Any], record: RunRecord, width: int = 560, count: int = 90
 ) -> Iterator[Image.Image]:
-    """The run in ``count`` pictures: the robot, what a laser of its range sees of the map, and its way."""
+    """Yield the run in ``count`` pictures: robot, field of view of its laser, trajectories so far."""
     if not len(record.truth):
         return
-    stage = _stage(record, width, header=34)
+    background = _background(record, width, header=34)
     for row in record.truth[np.linspace(0, len(record.truth) - 1, count).round().astype(int)]:
-        canvas, so_far = stage.copy(), row[0]
+        canvas, stamp = background.copy(), row[0]
         if record.grid is not None:
-            canvas.area(_sight(record.grid, row), SIGHT)
-        canvas.path(thinned(_until(record.truth, so_far)[:, 1:3]), TRUTH, 3.5)
-        canvas.path(thinned(_until(record.estimate, so_far)[:, 1:3]), ESTIMATE, 1.5)
+            canvas.area(_field_of_view(record.grid, row), SIGHT)
+        canvas.path(thinned(_until(record.truth, stamp)[:, 1:3]), TRUTH, 3.5)
+        canvas.path(thinned(_until(record.estimate, stamp)[:, 1:3]), ESTIMATE, 1.5)
         _draw_robot(canvas, row)
         _draw_object(canvas, record, row)
-        state = next((state.name for state in reversed(record.states) if state.stamp <= so_far), "")
-        canvas.write(10, 8, f"{so_far:5.1f} s   {state}", INK, 15)
+        state = next((state.name for state in reversed(record.states) if state.stamp <= stamp), "")
+        canvas.write(10, 8, f"{stamp:5.1f} s   {state}", INK, 15)
         yield canvas.shown()
 
 
 def save_animation(path, frames: Sequence[Image.Image], seconds: float = 9.0) -> None:
-    """A GIF that lasts so many seconds, its last picture a little longer, for ever again."""
+    """Write an endless GIF of so many seconds; its last frame is shown longer."""
     palette = _palette(frames)
     reduced = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
     durations = [round(1000.0 * seconds / len(frames))] * len(frames)
@@ -157,7 +172,7 @@ def save_animation(path, frames: Sequence[Image.Image], seconds: float = 9.0) ->
 
 
 def _palette(frames: Sequence[Image.Image]) -> Image.Image:
-    """Colours that serve every picture: those of some of them, and the pure ones, which few pixels have."""
+    """Return colours for all frames: those of some frames, and the pure ones, which few pixels have."""
     some = [frames[0], frames[len(frames) // 2], frames[-1]]
     pure = Image.new("RGB", (len(COLOURS), 1))
     pure.putdata([colour[:3] for colour in COLOURS])
@@ -169,7 +184,7 @@ def _palette(frames: Sequence[Image.Image]) -> Image.Image:
     return sample.quantize(96, Image.Quantize.MEDIANCUT)
 
 
-def _stage(record: RunRecord, width: int, header: int) -> MapCanvas:
+def _background(record: RunRecord, width: int, header: int) -> MapCanvas:
     grid = record.grid or OccupancyGrid(np.full((1, 1), -1, dtype=np.int8), 0.05)
     canvas = MapCanvas(grid, np.concatenate([record.truth[:, 1:3], record.estimate[:, 1:3]]), width, header)
     for zone in record.zones:
@@ -188,20 +203,20 @@ def _draw_robot(canvas: MapCanvas, row: np.ndarray) -> None:
 
 
 def _draw_object(canvas: MapCanvas, record: RunRecord, row: np.ndarray) -> None:
-    for marking in _markings_at(record, float(row[0])):
+    for marking in _markers_at(record, float(row[0])):
         if marking.is_shown:
             corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * 0.11
             canvas.area(corners + [marking.x, marking.y], OBJECT)
 
 
-def _markings_at(record: RunRecord, stamp: float) -> List[MarkerEvent]:
-    """The latest of each marker."""
+def _markers_at(record: RunRecord, stamp: float) -> List[MarkerEvent]:
+    """Return the latest state of each marker."""
     latest = {marking.name: marking for marking in record.markings if marking.stamp <= stamp}
     return list(latest.values())
 
 
-def _sight(grid: OccupancyGrid, row: np.ndarray) -> np.ndarray:
-    from planar.geometry.ray_casting import cast_rays  # late: it brings numba
+def _field_of_view(grid: OccupancyGrid, row: np.ndarray) -> np.ndarray:
+    from planar.geometry.ray_casting import cast_rays  # late: imports numba
 
     pose = Pose2.from_array(row[1:])
     angles = np.linspace(-math.pi, math.pi, BEAMS, endpoint=False)
@@ -214,4 +229,4 @@ def _until(rows: np.ndarray, stamp: float) -> np.ndarray:
 
 
 def _font(size: int):
-    return ImageFont.load_default(size * FINER)
+    return ImageFont.load_default(size * SUPERSAMPLING)

@@ -1,4 +1,4 @@
-"""What was seen of a run, in simulated seconds and in the map frame."""
+"""Record of a run, in simulated seconds and in the map frame."""
 
 import base64
 import io
@@ -19,18 +19,18 @@ DECIMALS = 4
 
 
 class RecordError(PlanarError):
-    """A record of a run is missing or cannot be read."""
+    """The record of a run is missing or broken."""
 
 
 class StateEvent(NamedTuple):
-    """From ``stamp`` on the mission was in this state."""
+    """The mission changed to this state."""
 
     stamp: float
     name: str
 
 
 class GoalEvent(NamedTuple):
-    """A pose that the robot was sent to."""
+    """A goal was sent."""
 
     stamp: float
     x: float
@@ -39,7 +39,7 @@ class GoalEvent(NamedTuple):
 
 
 class MarkerEvent(NamedTuple):
-    """From ``stamp`` on the marker ``name`` was shown at x, y, or hidden."""
+    """A marker was shown at x, y, or hidden."""
 
     stamp: float
     name: str
@@ -89,12 +89,22 @@ def _rows(columns: int):
 
 @dataclass(eq=False)
 class RunRecord:
-    """What was seen of a run, from outside the robot and from within.
+    """Record of a run. Stamps are simulated seconds.
 
-    ``truth``, ``estimate``, ``odometry``: (N, 4) stamp, x, y, yaw of the robot as it was, as localization
-    had it, and by wheels and gyro alone from the first true pose on. ``velocity``: (N, 3) stamp, m/s, rad/s,
-    true. ``pace``: (N, 2) stamp, wall-clock seconds since the start. ``plans``: each (N, 2) x, y, the first
-    plan for a goal. ``grid``: the map that the robot had last. Stamps are those of the simulation.
+    Attributes:
+        truth: (N, 4), stamp, x, y, yaw: true pose.
+        estimate: (N, 4), the same as estimated by localization.
+        odometry: (N, 4), the same by odometry alone, starting at the first true pose.
+        velocity: (N, 3), stamp, true linear [m/s] and angular velocity [rad/s].
+        pace: (N, 2), stamp, wall-clock seconds since the start.
+        plans: First plan for each goal, each (N, 2), x, y.
+        states: States of the mission.
+        goals: Goals sent to move_base.
+        markings: Changes of markers.
+        collisions: Contacts of the robot.
+        warnings: Warnings and errors of nodes.
+        zones: Places of the mission.
+        grid: Last map.
     """
 
     truth: np.ndarray = _rows(4)
@@ -113,17 +123,17 @@ class RunRecord:
 
     @property
     def end(self) -> float:
-        """The last stamp that was seen."""
+        """Last stamp."""
         return float(self.truth[-1, 0]) if len(self.truth) else 0.0
 
 
-# Whatever json, numpy and Pillow make of what is no record.
+# Errors of json, numpy and Pillow for broken records.
 UNREADABLE = (OSError, ValueError, LookupError, TypeError, ArithmeticError, RecursionError, PlanarError)
 SERIES = ("truth", "estimate", "odometry", "velocity", "pace")
 
 
 def save_record(folder: Path, record: RunRecord) -> Path:
-    """Writes record.json, whole or not at all."""
+    """Write record.json atomically."""
     content: Dict[str, Any] = {name: _rounded(getattr(record, name)) for name in SERIES}
     content["plans"] = [_rounded(plan) for plan in record.plans]
     content.update({name: getattr(record, name) for name in EVENTS})
@@ -134,7 +144,11 @@ def save_record(folder: Path, record: RunRecord) -> Path:
 
 
 def load_record(folder: Path) -> RunRecord:
-    """The record of a run folder. Raises RecordError."""
+    """Read the record of a run folder.
+
+    Raises:
+        RecordError: If it is missing or broken.
+    """
     path = folder / FILE_NAME
     try:
         content = json.loads(read_text(path))
@@ -154,7 +168,7 @@ def load_record(folder: Path) -> RunRecord:
 
 
 def _check_kinds(content: Any) -> None:
-    """Raises TypeError if a number of an event is none, or a text: whoever shows them counts on it."""
+    """Raise TypeError if a number or text of an event has the wrong type, since pages rely on it."""
     for name, kind in EVENTS.items():
         for event in content[name]:
             for value, wanted in zip(event, get_type_hints(kind).values()):
@@ -168,7 +182,7 @@ def _rounded(rows: np.ndarray) -> list:
 
 
 def _packed(grid: OccupancyGrid) -> Dict[str, Any]:
-    """A grid as an 8-bit PNG of its values, unknown being 255, lowest row first."""
+    """Encode a grid as 8-bit PNG of its values, unknown being 255, lowest row first."""
     stream = io.BytesIO()
     Image.fromarray(grid.cells.view(np.uint8)).save(stream, "PNG")
     png = base64.b64encode(stream.getvalue()).decode("ascii")
@@ -179,6 +193,6 @@ def _unpacked(packed: Dict[str, Any]) -> OccupancyGrid:
     try:
         with Image.open(io.BytesIO(base64.b64decode(packed["png"]))) as image:
             cells = np.array(image).view(np.int8)
-    except Exception as error:  # what Pillow raises for a broken file has no common class
+    except Exception as error:  # Pillow's errors for broken files have no common class
         raise ValueError(f"grid: no picture ({error})") from None
     return OccupancyGrid(cells, float(packed["resolution"]), Pose2.from_array(packed["origin"]))

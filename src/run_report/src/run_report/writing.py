@@ -1,4 +1,4 @@
-"""What is left in the folder of a run."""
+"""Write the report into a run folder."""
 
 import io
 from functools import partial
@@ -21,10 +21,18 @@ TRAJECTORIES = (
 def write_report(
     folder: Path, result: Mapping[str, Any], record: RunRecord, with_gif: bool = False
 ) -> List[str]:
-    """Writes trajectories, record.json, run.png, report.html and, if asked for, run.gif into the folder.
+    """Write trajectories, record.json, run.png, report.html and optionally run.gif.
 
-    One that cannot be written does not keep the others from it: returns what is missing, in words, which the
-    page tells as well.
+    A file that cannot be written does not keep the others from being written.
+
+    Args:
+        folder: Run folder.
+        result: Content of result.json.
+        record: Record of the run.
+        with_gif: Write run.gif, too.
+
+    Returns:
+        What is missing, in words; the page lists it, too.
     """
     works: List[Tuple[str, Callable[[], object]]] = [
         (f"{stem}.tum", partial(_write_trajectory, folder, stem, getattr(record, name)))

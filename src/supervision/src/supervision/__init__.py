@@ -1,1 +1,1 @@
-"""What a command needs around its run: a supervised graph, a run folder, Ctrl-C, the terminal."""
+"""Supervision of a run: graph of nodes, run folder, Ctrl-C, terminal output."""

@@ -1,4 +1,4 @@
-"""A command line as a frozen dataclass: a field is an option, with its default, its kind and its meaning."""
+"""Command lines as frozen dataclasses: a field is an option with its default, type and help text."""
 
 import argparse
 from dataclasses import MISSING, field, fields
@@ -10,9 +10,12 @@ MEANING = "help"
 
 
 def option(default: Any, meaning: str, **how: Any) -> Any:
-    """A field for the option named like it, or ``flag``; ``how`` is for argparse's add_argument.
+    """Define a field that is an option.
 
-    What is False by default is switched on by the option alone. A default of None is not told by ``--help``.
+    Args:
+        default: Default value; False makes the option a flag, None is not shown by ``--help``.
+        meaning: Help text.
+        **how: Arguments of argparse's add_argument; ``flag`` replaces the name made of the field's name.
     """
     if default is False:
         how["action"] = "store_true"
@@ -20,9 +23,13 @@ def option(default: Any, meaning: str, **how: Any) -> Any:
 
 
 def argument(meaning: str, default: Any = MISSING, **how: Any) -> Any:
-    """A field for an argument that is told by its position; ``how`` as above.
+    """Define a field that is a positional argument.
 
-    ``default``: for dataclasses alone, where a field with a default comes before; the argument must be given.
+    Args:
+        meaning: Help text.
+        default: Only for dataclasses in which a field with a default precedes; the argument is required
+            anyway.
+        **how: Arguments of argparse's add_argument.
     """
     return field(default=default, metadata={MEANING: meaning, **how})
 
@@ -30,9 +37,14 @@ def argument(meaning: str, default: Any = MISSING, **how: Any) -> Any:
 def parse(
     kind: Type[Options], words: Sequence[str], script: str, allow_abbreviations: bool = True
 ) -> Options:
-    """The options that ``words`` give; ends the process on --help, and on nonsense in the name of ``script``.
+    """Parse a command line; exits on ``--help`` and on invalid options.
 
-    A field that is made by neither ``option`` nor ``argument`` keeps its default.
+    Args:
+        kind: Dataclass of the options; fields made by neither ``option`` nor ``argument`` keep their
+            defaults.
+        words: Command line.
+        script: Name of the program in messages.
+        allow_abbreviations: Accept unique prefixes of options.
     """
     parser = argparse.ArgumentParser(
         prog=script,
@@ -40,7 +52,7 @@ def parse(
         formatter_class=argparse.ArgumentDefaultsHelpFormatter,
         allow_abbrev=allow_abbreviations,
     )
-    for item in fields(kind):  # type: ignore[arg-type]  # nothing says "any dataclass" in Python 3.8
+    for item in fields(kind):  # type: ignore[arg-type]  # Python 3.8 has no type for "any dataclass"
         how = dict(item.metadata)
         if "flag" in how:
             flag = how.pop("flag") or "--" + item.name.replace("_", "-")
@@ -53,19 +65,19 @@ def parse(
 
 
 def words(options: Any) -> List[str]:
-    """The words that ``parse`` makes these options of; those that are as by default are left out."""
-    told: List[str] = []
+    """Return the command line that ``parse`` converts to these options, without those at their defaults."""
+    arguments: List[str] = []
     for item in fields(options):
         value = getattr(options, item.name)
         if value == item.default or not item.metadata:
             continue
         if "flag" in item.metadata:
-            told.append(item.metadata["flag"] or "--" + item.name.replace("_", "-"))
+            arguments.append(item.metadata["flag"] or "--" + item.name.replace("_", "-"))
         values = value if isinstance(value, tuple) else () if value is True else (value,)
-        told += [str(one.resolve()) if isinstance(one, Path) else str(one) for one in values]
-    return told
+        arguments += [str(one.resolve()) if isinstance(one, Path) else str(one) for one in values]
+    return arguments
 
 
 def summary(kind: type) -> str:
-    """What it is for: the first line of its docstring."""
+    """Return the first line of a class's docstring."""
     return (kind.__doc__ or "").partition("\n")[0]

@@ -1,4 +1,4 @@
-"""What a person sees in the terminal while a run goes on."""
+"""Terminal output of a run."""
 
 import math
 import sys
@@ -14,7 +14,7 @@ PLAIN_SECONDS = 5.0
 
 
 class Display:
-    """A status line that is rewritten in a terminal, and repeated now and then in a log."""
+    """A status line that is updated in a terminal, and printed from time to time in a log."""
 
     def __init__(self):
         self._console = Console(highlight=False, soft_wrap=True)
@@ -34,17 +34,17 @@ class Display:
             self._status = None
 
     def release_terminal(self) -> None:
-        """Shows no status any more: the terminal belongs to somebody else."""
+        """Show no status any more, because another program uses the terminal."""
         self.__exit__()
         self._latest_plain = math.inf
 
     def print(self, line: str) -> None:
-        """Prints a line that stays."""
+        """Print a line."""
         with self._lock:
             self._console.print(escape(line))
 
     def show(self, status: str) -> None:
-        """Shows how things stand right now."""
+        """Show the current status."""
         with self._lock:
             if self._status is not None:
                 self._status.update(escape(status))
@@ -54,5 +54,5 @@ class Display:
 
 
 def print_error(text: str) -> None:
-    """One line on stderr."""
+    """Print an error in one line on stderr."""
     print(f"error: {text}", file=sys.stderr, flush=True)

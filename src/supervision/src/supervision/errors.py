@@ -6,8 +6,12 @@ from planar import PlanarError
 class LaunchError(PlanarError):
     """The graph of nodes could not be started, or a node of it died.
 
-    Attributes:
+    Args:
+        text: Node and reason.
         is_bad_input: A node rejected its input (exit code 2).
+
+    Attributes:
+        is_bad_input: As given.
     """
 
     def __init__(self, text: str, is_bad_input: bool = False):

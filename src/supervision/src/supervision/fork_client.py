@@ -1,6 +1,7 @@
-"""A program that lives on in a child of a fork server, which has imported already what it needs.
+"""Run a program in a child of the preloaded process, which has already imported what it needs.
 
-Who starts many programs runs such a server (``supervision.fork_server``) and names it in their environment.
+The launching process starts the server (``supervision.fork_server``) and passes its address in the
+environment.
 """
 
 import array
@@ -20,16 +21,21 @@ FORK_SERVER = "HOME_SERVICE_FORK_SERVER"
 STREAMS = (0, 1, 2)
 LARGEST_MESSAGE = 2**17
 ANSWER_SECONDS = 20.0
-# What the child waits for before it begins: from now on signals are handed on.
+# Sent to the child, which waits for it, when signals are forwarded.
 BEGIN = b"begin"
 CREDENTIALS = struct.Struct("3i")
 
 
 def run_in_fork_server(function: str, *arguments: str) -> None:
-    """Ends as the child does in which the server calls the function (``package.module:name``).
+    """Call a function in a child of the server and exit like that child.
 
-    Command line, environment, folder and streams are this process' own there, signals that ask for an end are
-    handed on, and the child is killed where this process is. Returns if there is no server that answers.
+    Command line, environment, folder and streams of the child are those of this process, termination
+    signals are forwarded to it, and it is killed if this process is. Returns if there is no server that
+    responds.
+
+    Args:
+        function: Function as ``package.module:name``.
+        *arguments: Its arguments.
     """
     address = os.environ.get(FORK_SERVER)
     if not address:
@@ -58,15 +64,15 @@ def run_in_fork_server(function: str, *arguments: str) -> None:
 
 
 def user_of_peer(connection: socket.socket) -> int:
-    """The number of the user whose process is at the other end of a Unix socket."""
+    """Return the user id of the process at the other end of a Unix socket."""
     credentials = connection.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, CREDENTIALS.size)
     return CREDENTIALS.unpack(credentials)[1]
 
 
 def exit_like(code: int) -> NoReturn:
-    """Ends this process as another has ended: a negative ``code`` is the number of the signal that did it."""
+    """Exit like another process; a negative ``code`` is the number of the signal that ended it."""
     if code < 0:
-        with suppress(OSError):  # nobody may tell what SIGKILL is to do
+        with suppress(OSError):  # SIGKILL has no handler
             signal.signal(-code, signal.SIG_DFL)
         os.kill(os.getpid(), -code)
     sys.exit(code)

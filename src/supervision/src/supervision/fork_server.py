@@ -1,10 +1,10 @@
-"""Imports modules once for many programs, which are forked of it (``supervision.fork_client``).
+"""Preloaded process (forkserver): imports modules once and forks a child for each client.
 
 python3 -m supervision.fork_server NAME (MODULE | MODULE:FUNCTION)...
 
-Most of the time in which a node starts goes into imports: here they are made once, and while the graph that
-needs them is still being read. It listens at the abstract Unix socket NAME from the first moment on, to
-processes of its own user alone; who comes while it imports, waits. It ends with who has started it.
+Imports take most of a node's start-up time: here they are made once, while roslaunch still reads the launch
+files. The server listens at the abstract Unix socket NAME, for processes of the same user only; clients that
+connect during the imports wait. It ends with the process that has started it.
 """
 
 import array
@@ -31,18 +31,22 @@ from supervision.processes import end_descendants, ending_with_parent
 
 WAITING_CLIENTS = 64
 REQUEST_SECONDS = 1.0
-# Of Linux; the module fcntl does not name it.
+# Defined by Linux, not by the module fcntl.
 F_SETSIG = 10
 
 
 def start_fork_server(preparations: Sequence[str]) -> "subprocess.Popen[bytes]":
-    """One that makes the preparations, named in the environment from now on.
+    """Start a preloaded process and put its address into the environment.
 
-    Started by the main thread, with which it ends; who leaves (``supervision.interruption``) sees it end.
+    Must be called by the main thread, with which it ends; it has ended when this process exits
+    (``supervision.interruption``).
+
+    Args:
+        preparations: Modules to import and functions to call, as ``package.module:name``.
     """
     name = f"home_service_{os.getpid()}_{secrets.token_hex(8)}"
     command = [sys.executable, "-m", "supervision.fork_server", name, *preparations]
-    # Children have no use for threads of BLAS, which are not forked either.
+    # Threads of BLAS are not forked, so children cannot use them.
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
     os.environ[FORK_SERVER] = name
     before_exit(end_descendants)
@@ -61,11 +65,11 @@ def main() -> None:
     with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as listener:
         listener.bind(f"\0{name}")
         listener.listen(WAITING_CLIENTS)
-        gc.disable()  # nearly all that is made is to stay
+        gc.disable()  # nearly all objects stay alive
         for preparation in preparations:
-            with suppress(Exception):  # the node that needs it fails of it and says so
+            with suppress(Exception):  # the node that needs it fails and reports the error
                 _call(preparation)
-        gc.freeze()  # so that children share what they do not change
+        gc.freeze()  # so that children share unchanged memory
         gc.enable()
         request, connection = _ForkServer(listener).serve()
     _take_over_client(request, connection)
@@ -73,7 +77,7 @@ def main() -> None:
 
 
 def _call(what: str, *arguments: str) -> None:
-    """Imports a module, and calls its function if ``what`` is ``package.module:function``."""
+    """Import a module; call its function if ``what`` is ``package.module:function``."""
     name, _, function = what.partition(":")
     module = importlib.import_module(name)
     if function:
@@ -81,7 +85,7 @@ def _call(what: str, *arguments: str) -> None:
 
 
 class _ForkServer:
-    """Forks a child for each client, and tells the client its number and then how it has ended."""
+    """Forks a child for each client and sends the client its process id and then its exit code."""
 
     def __init__(self, listener: socket.socket):
         self._listener = listener
@@ -91,7 +95,7 @@ class _ForkServer:
         signal.set_wakeup_fd(self._awakened, warn_on_full_buffer=False)
 
     def serve(self) -> Tuple[Dict[str, Any], socket.socket]:
-        """For ever; returns what is to be done, and for whom, in each child."""
+        """Serve for ever; returns in each child the request and the connection to its client."""
         while True:
             ready, _, _ = select.select([self._listener, self._awake], [], [])
             if self._awake in ready:
@@ -138,7 +142,7 @@ class _ForkServer:
 
 
 def _received(connection: socket.socket) -> Optional[Dict[str, Any]]:
-    """What a client of the same user asks for, with its ``streams``; None of anybody or anything else."""
+    """Return the request of a client of the same user with its ``streams``; None if it is not valid."""
     if user_of_peer(connection) != os.getuid():
         return None
     connection.settimeout(REQUEST_SECONDS)
@@ -153,7 +157,7 @@ def _received(connection: socket.socket) -> Optional[Dict[str, Any]]:
 
 
 def _take_over_client(request: Dict[str, Any], connection: socket.socket) -> None:
-    """Makes this child the process that has asked for it, in all that a program can tell."""
+    """Give this child the identity of its client: session, streams, environment, command line."""
     _wait_for_client(connection)
     _end_with_client(connection)
     os.setsid()
@@ -188,7 +192,7 @@ def _end_with_client(connection: socket.socket) -> None:
 
 
 def _name_process(words: List[str]) -> None:
-    """As ps shows it: over the words of this process' own command line, as far as these reach."""
+    """Set the command line shown by ps, as far as that of this process has room."""
     fields = Path("/proc/self/stat").read_text().rpartition(")")[2].split()
     start, end = int(fields[45]), int(fields[46])
     room = end - start

@@ -1,10 +1,10 @@
-"""A command that leaves no process behind, also if whoever has started it is killed at any moment.
+"""Run a command so that no process is left, even if its parent is killed at any moment.
 
 python3 -m supervision.guard PARENT PATIENCE COMMAND...
 
-Started by the process PARENT, it runs the command until that ends, or this is sent SIGTERM, or PARENT is no
-more; upon which the command is ended as by Ctrl-C, within PATIENCE seconds, and then whatever it has started.
-The exit code is the command's. SIGINT is for the command alone, which is in the same process group.
+Runs the command for the process PARENT until the command ends, SIGTERM is received, or PARENT dies; then
+interrupts the command, waits up to PATIENCE seconds, and kills its descendants. The exit code is the
+command's. SIGINT is left to the command, which is in the same process group.
 """
 
 import os
@@ -22,26 +22,31 @@ SIGINT_SECONDS = 2.0
 
 
 def guarded(command: List[str], patience: float = SIGINT_SECONDS) -> List[str]:
-    """The command line of a guard of ``command``, for a child of this process, started by its main thread."""
+    """Return the command line of a guard of ``command``, to be started by the main thread of this process."""
     return [sys.executable, "-m", "supervision.guard", str(os.getpid()), f"{patience:g}", *command]
 
 
 def run_guarded(command: List[str], patience: float) -> int:
-    """Runs a command that takes ``patience`` seconds to end when it is asked to; returns its exit code.
+    """Run a guarded command and wait for its end, so that this process may be killed.
 
-    One that a signal has ended has 128 and the signal's number, as in a shell.
+    Termination signals are forwarded to the command.
 
-    This process only waits, so that it may be killed: see above. What asks it to end is for the command.
+    Args:
+        command: The command.
+        patience: Time that the command may take to end [s].
+
+    Returns:
+        Exit code; 128 plus the signal's number if a signal ended the command, as in a shell.
     """
     adopt_orphans()
     guard = _start(SIGNALS, subprocess.Popen.terminate, guarded(command, patience), preexec_fn=ignore_ctrl_c)
     code = guard.wait()
-    end_descendants(patience)  # of a guard that was killed itself
+    end_descendants(patience)  # in case the guard itself was killed
     return code if code >= 0 else 128 - code
 
 
 def ignore_ctrl_c() -> None:
-    """For a guard between fork and exec."""
+    """Ignore SIGINT; for a guard between fork and exec."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
@@ -67,7 +72,7 @@ def _start(
     command: List[str],
     **options: Any,
 ) -> subprocess.Popen:
-    """A process that is asked to end when this one is sent one of the signals, from the first moment on."""
+    """Start a process; a signal to this process asks it to end, even while it is being started."""
     process: Optional[subprocess.Popen] = None
     is_asked = False
 
@@ -85,7 +90,7 @@ def _start(
 
 
 def _interrupt(process: subprocess.Popen, patience: float) -> None:
-    """As Ctrl-C does; kills it if it takes too long over that."""
+    """Interrupt a process as Ctrl-C does, and kill it if it takes too long."""
     process.send_signal(signal.SIGINT)
     impatience = Timer(patience, process.kill)
     impatience.daemon = True

@@ -1,4 +1,4 @@
-"""How a command hears Ctrl-C, and how it leaves."""
+"""Handling of Ctrl-C and termination signals, and exit of a command."""
 
 import os
 import signal
@@ -13,7 +13,7 @@ INTERRUPTED = 130
 
 
 def _signals() -> Tuple[signal.Signals, ...]:
-    """Those that ask for an end; the terminal that closes is none to a command under nohup."""
+    """Return the signals that request the end; SIGHUP is ignored under nohup."""
     asked = (signal.SIGINT, signal.SIGTERM)
     ignores_hangup = signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
     return asked if ignores_hangup else (*asked, signal.SIGHUP)
@@ -26,30 +26,35 @@ _exit_hooks: List[Callable[[], object]] = []
 
 
 def on_signals(handle: Callable[[int, Any], object], signals: Iterable[int] = SIGNALS) -> None:
-    """From now on ``signals`` are handled by ``handle``, in the main thread, even while that waits."""
+    """Handle signals in the main thread, even while it waits.
+
+    Args:
+        handle: Called with the signal's number and the frame.
+        signals: Signals to handle.
+    """
     for number in signals:
         signal.signal(number, handle)
     wake_main_thread_on_signals()
 
 
 def exit_when_interrupted() -> None:
-    """From now on SIGINT, SIGTERM or SIGHUP ends the process at once: nothing has to be taken down yet.
+    """From now on a termination signal ends the process at once; nothing needs to be cleaned up yet.
 
-    Libraries that are being imported catch whatever is raised.
+    The handler raises nothing, since libraries that are being imported may catch it.
     """
     on_signals(_leave)
 
 
 @contextmanager
 def exiting_on_signals() -> Iterator[None]:
-    """Any of ``SIGNALS`` ends the process at once and in silence, where nothing has to be taken down yet."""
+    """Context in which a termination signal ends the process at once and silently."""
     with handling_signals(lambda number, _frame: os._exit(128 + number)):
         yield
 
 
 @contextmanager
 def handling_signals(handle: Callable[[int, Any], object]) -> Iterator[None]:
-    """``SIGNALS`` are handled by ``handle``, afterwards as they were before."""
+    """Context in which termination signals are handled by ``handle``."""
     before = {number: signal.getsignal(number) for number in SIGNALS}
     on_signals(handle)
     try:
@@ -60,23 +65,23 @@ def handling_signals(handle: Callable[[int, Any], object]) -> Iterator[None]:
 
 
 def raise_when_interrupted() -> None:
-    """From now on the first of ``SIGNALS`` raises RunInterruptedError, and further ones are ignored."""
+    """From now on the first termination signal raises RunInterruptedError, and further ones are ignored."""
     on_signals(_raise)
 
 
 def raise_if_interrupted() -> None:
-    """Raises RunInterruptedError once more, in case that a library has caught the first one."""
+    """Raise RunInterruptedError again, in case a library has caught the first one."""
     if _is_interrupted:
         raise RunInterruptedError
 
 
 def before_exit(do: Callable[[], object]) -> None:
-    """Calls it before this process ends of itself, or because it is asked to."""
+    """Call a function before this process exits by ``leave`` or is interrupted."""
     _exit_hooks.append(do)
 
 
 def leave(code: int) -> NoReturn:
-    """Ends the process without waiting for threads of ROS that still listen to a master that is gone."""
+    """Exit without waiting for threads of ROS that still try to reach a dead master."""
     sys.stdout.flush()
     _end(code)
 
@@ -101,6 +106,6 @@ def _raise(_number, _frame):
 
 
 def ignore_further_signals() -> None:
-    """The first of ``SIGNALS`` is being followed: others do not disturb that."""
+    """Ignore termination signals, since the first one is being handled."""
     for number in SIGNALS:
         signal.signal(number, signal.SIG_IGN)

@@ -1,4 +1,4 @@
-"""Which nodes of a graph have died, and of what, read from what roslaunch and they print."""
+"""Exits of nodes, parsed from the output of roslaunch and of the nodes."""
 
 import contextlib
 import re
@@ -8,23 +8,28 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Collection, Dict, List, Optional
 
-# Of a node without which there is no run, the name stands in the line before.
+# The name of a required node is in the line before.
 REQUIRED = re.compile(r"REQUIRED process \[(?P<node>[^\]\[]+?)(-\d+)?\] has died")
 EXIT_LINE = re.compile(
     r"(\[(?P<node>[^\]\[]+?)(-\d+)?\] )?process has died \[pid \d+, exit code (?P<code>-?\d+)"
 )
 ERROR_LINE = re.compile(r"^\[/(?P<node>\S+)\] error: (?P<text>.*)")
 BAD_INPUT = 2
-# A verdict of the node's own, as of a mission that has failed: no accident.
+# Exit code of a failed mission, which is no crash.
 MISSION_FAILED = 1
 MAX_RESTARTS = 3
-# Collects what nodes log; nobody needs it to go on, and every roslaunch starts it again.
+# Log aggregator; not required by any node, and always restarted by roslaunch.
 LOG_COLLECTOR = "rosout"
 
 
 @dataclass(frozen=True)
 class NodeFailure:
-    """A node that died with an error: its own words, if it had any, and whether it refused its input."""
+    """A node that ended the run.
+
+    Attributes:
+        text: Node and reason; the reason is its error line, if it printed one.
+        is_bad_input: It rejected its input.
+    """
 
     text: str
     is_bad_input: bool
@@ -32,16 +37,22 @@ class NodeFailure:
 
 @dataclass(frozen=True)
 class Restart:
-    """A node that died and was started again."""
+    """A node that died and was restarted."""
 
     node: str
     reason: str
 
 
 class NodeExits:
-    """Takes down who died. Of the nodes in ``comes_back`` each is started again, a few times, as rosout is.
+    """Parses which nodes have died.
 
-    ``failure``: the first exit_line for good, None so far. ``restarts``: the others.
+    Args:
+        log_folder: Folder of the logs, named in failures without an error line.
+        respawned: Nodes that roslaunch restarts, a few times, as it does rosout.
+
+    Attributes:
+        failure: First final exit; None so far.
+        restarts: Nodes that died and were restarted.
     """
 
     def __init__(self, log_folder: Path, respawned: Collection[str] = ()):
@@ -53,7 +64,7 @@ class NodeExits:
         self._exit_counts: Counter = Counter()
 
     def read(self, line: str) -> None:
-        """A line of roslaunch's output."""
+        """Parse a line of roslaunch's output."""
         error_line, required, exit_line = (
             ERROR_LINE.match(line),
             REQUIRED.search(line),
@@ -79,7 +90,7 @@ class NodeExits:
 
 
 def describe_exit(code: int) -> str:
-    """What an exit code means; a negative one is a signal's number."""
+    """Describe an exit code in words; a negative one is a signal's number."""
     if code >= 0:
         return f"died with exit code {code}"
     with contextlib.suppress(ValueError):

@@ -1,15 +1,15 @@
-"""How many files and sockets a process, and those that it starts, may have open."""
+"""Limit of open files and sockets of this process and its children."""
 
 import resource
 
 from planar import SettingsError
 
-# What a node of a graph opens at most is about 150, one that records everything.
+# A node that records everything opens about 150 files.
 LEAST, USUAL = 256, 1024
 
 
 def allow_open_files(wanted: int = USUAL) -> int:
-    """Raises the limit of this process to ``wanted``, as far as the system lets it; returns the limit."""
+    """Raise the limit to ``wanted``, as far as the system allows; return the limit."""
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     if soft == resource.RLIM_INFINITY:
         return wanted
@@ -20,9 +20,11 @@ def allow_open_files(wanted: int = USUAL) -> int:
 
 
 def check_open_files() -> None:
-    """Sees to it that the nodes of a graph may open what they need. Raises SettingsError."""
+    """Make sure that nodes may open the files that they need.
+
+    Raises:
+        SettingsError: If the limit is too low.
+    """
     limit = allow_open_files()
     if limit < LEAST:
-        raise SettingsError(
-            f"no more than {limit} open files are allowed (ulimit -n), and the nodes need {LEAST}"
-        )
+        raise SettingsError(f"the limit of open files is {limit} (ulimit -n), but the nodes need {LEAST}")

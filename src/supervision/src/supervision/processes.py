@@ -1,4 +1,4 @@
-"""The processes below this one: none may hide, and none may be left."""
+"""Descendants of this process: find and end all of them."""
 
 import contextlib
 import ctypes
@@ -10,29 +10,29 @@ from typing import Callable, List
 import psutil
 
 PR_SET_PDEATHSIG, PR_SET_CHILD_SUBREAPER = 1, 36
-# Within which a process ends when it is asked to.
+# Time for a process to end after SIGTERM [s].
 SIGTERM_SECONDS = 2.0
 
 
 def start_of_this_process() -> float:
-    """When this process began, in seconds of the wall clock as ``time.time`` tells them."""
+    """Return when this process was started, in seconds of ``time.time``."""
     return psutil.Process().create_time()
 
 
 def adopt_orphans() -> None:
-    """Makes this process the parent of every descendant whose own parent dies, so that none can hide."""
+    """Become the parent of every descendant whose parent dies, so that none is lost."""
     ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
 
 
 def ending_with_parent(number: int = signal.SIGINT) -> Callable[[], None]:
-    """For a child between fork and exec: it is sent the signal when this process ends, be it by SIGKILL.
+    """Return a function that makes a child, between fork and exec, receive a signal when this process ends.
 
-    Linux takes the end of the thread that forks for that of the process: it is to be the main one.
+    Linux reports the end of the forking thread, so call it from the main thread.
     """
     parent = os.getpid()
 
     def follow() -> None:
-        # What a handler of the parent's were to note here, the program to come would never hear.
+        # A signal taken by the parent's handler would be lost for the program to come.
         signal.signal(number, signal.SIG_DFL)
         end_when_orphaned(parent, number)
 
@@ -40,14 +40,14 @@ def ending_with_parent(number: int = signal.SIGINT) -> Callable[[], None]:
 
 
 def end_when_orphaned(parent: int, number: int) -> None:
-    """This process is sent the signal when ``parent`` ends, and at once if it has ended already."""
+    """Send this process a signal when ``parent`` ends, or at once if it has ended."""
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, number, 0, 0, 0)
     if os.getppid() != parent:
         os.kill(os.getpid(), number)
 
 
 def end_descendants(patience: float = SIGTERM_SECONDS) -> None:
-    """Terminates and, after ``patience`` seconds, kills every descendant of this process, however deep."""
+    """Terminate all descendants of this process and kill them after ``patience`` seconds."""
     deadline = time.monotonic() + patience
     descendants = _living_descendants()
     for process in descendants:
@@ -65,7 +65,7 @@ def _living_descendants() -> List[psutil.Process]:
 
 
 def _is_alive(process: psutil.Process) -> bool:
-    """A zombie is not, nor one that has ended since it was listed."""
+    """Whether a process is neither a zombie nor gone."""
     with contextlib.suppress(psutil.NoSuchProcess):
         return process.status() != psutil.STATUS_ZOMBIE
     return False

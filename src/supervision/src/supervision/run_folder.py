@@ -1,4 +1,4 @@
-"""The folder in which a run leaves its logs and its result."""
+"""Run folder: logs and result of a run."""
 
 import contextlib
 import json
@@ -11,7 +11,11 @@ RESULT_FILE = "result.json"
 
 
 def create_run_folder(parent: Path, name: str) -> Path:
-    """A new folder ``parent``/<date>-<time>-<name> with a folder ``log`` in it. Raises SettingsError."""
+    """Create ``parent``/<date>-<time>-<name> with a folder ``log`` in it.
+
+    Raises:
+        SettingsError: If it cannot be created.
+    """
     try:
         parent.mkdir(parents=True, exist_ok=True)
         folder = _new_folder(parent / f"{datetime.now():%Y%m%d-%H%M%S}-{name}")
@@ -22,7 +26,7 @@ def create_run_folder(parent: Path, name: str) -> Path:
 
 
 def _new_folder(stem: Path) -> Path:
-    """Another run may take a name at any moment."""
+    """Create a folder under the first free name; another run may take a name at any moment."""
     folder, number = stem, 1
     while True:
         with contextlib.suppress(FileExistsError):
@@ -33,7 +37,7 @@ def _new_folder(stem: Path) -> Path:
 
 
 def write_result(folder: Path, result: dict) -> Path:
-    """Writes result.json, whole or not at all."""
+    """Write result.json atomically."""
     path = folder / RESULT_FILE
     write_atomically(path, (json.dumps(result, indent=2) + "\n").encode("utf-8"))
     return path

@@ -1,8 +1,9 @@
-"""Signals wake the main thread, whichever thread takes them.
+"""Wake the main thread when another thread takes a signal.
 
-Python calls handlers in the main thread only, when that works on. Linux offers the main thread a signal for
-the process, but another one that unblocks signals just then, as each does that starts a thread, takes it
-first. A main thread that waits for a lock is not woken by that, and hears of the signal with the next one.
+Python runs signal handlers in the main thread only, when it executes code again. Linux prefers the main
+thread for a signal of the process, but another thread that unblocks signals at that moment, as when it
+starts a thread, may take it first. A main thread that waits for a lock is not woken by that and would run
+the handler only after the next signal.
 """
 
 import os
@@ -10,9 +11,9 @@ import signal
 import threading
 import time
 
-# Nobody else's: all that it does is to interrupt what the main thread waits for.
+# Used for nothing else: it only interrupts what the main thread waits for.
 WAKEUP_SIGNAL = signal.SIGURG
-# The first may come just before the main thread begins to wait.
+# The first may arrive just before the main thread starts to wait.
 WAKEUPS, BETWEEN_SECONDS = 2, 0.1
 MOST_AT_ONCE = 64
 
@@ -20,7 +21,7 @@ _woken_process = 0
 
 
 def wake_main_thread_on_signals() -> None:
-    """Does so from now on. Called by the main thread, as often as it likes."""
+    """Wake the main thread from now on; to be called by the main thread, any number of times."""
     global _woken_process
     if _woken_process == os.getpid():
         return
@@ -30,7 +31,7 @@ def wake_main_thread_on_signals() -> None:
     signal.signal(WAKEUP_SIGNAL, lambda _number, _frame: None)
     signal.set_wakeup_fd(writing, warn_on_full_buffer=False)
     main_thread = threading.get_ident()
-    threading.Thread(target=_wake, args=[reading, main_thread], name="waking", daemon=True).start()
+    threading.Thread(target=_wake, args=[reading, main_thread], name="signal_wakeup", daemon=True).start()
 
 
 def _wake(reading: int, main_thread: int) -> None:

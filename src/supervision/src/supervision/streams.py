@@ -1,4 +1,4 @@
-"""Streams and logs that cannot be written, as on a full disk or when the terminal is gone, stop nobody."""
+"""Output streams that ignore write errors, as of a full disk or a closed terminal."""
 
 import logging
 import sys
@@ -7,10 +7,10 @@ from typing import TextIO
 
 
 def ignore_write_errors() -> None:
-    """From now on stdout, stderr and logs of this process lose what they cannot write, in silence.
+    """From now on stdout, stderr and logs of this process silently drop what cannot be written.
 
-    It would be raised in whatever the process is doing, a service's answer for example, and told by a
-    traceback for each line of a log.
+    Otherwise the error would be raised anywhere, in the answer of a service for example, and a traceback
+    printed for each line of a log.
     """
     logging.raiseExceptions = False
     sys.stdout, sys.stderr = _LossyStream(sys.stdout), _LossyStream(sys.stderr)

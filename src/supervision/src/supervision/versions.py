@@ -1,4 +1,4 @@
-"""Which software made a run, and on which processor."""
+"""Versions of the software that determines how a run goes, and the processor."""
 
 import os
 import platform
@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Dict
 
 CPUINFO = Path("/proc/cpuinfo")
-# What Linux tells of a processor on x86 and on ARM, and what we call it.
+# Fields of /proc/cpuinfo on x86 and ARM, with the prefix of each in the result.
 KINDS = {
     "model name": "",
     "cpu family": "family ",
@@ -22,7 +22,7 @@ VECTOR_UNITS = ("avx512f", "avx2", "avx", "sve", "asimd")
 
 
 def versions() -> Dict[str, str]:
-    """Names to versions of what determines how a run goes."""
+    """Return names and versions."""
     found = {"python": platform.python_version(), "home_service": project_version()}
     for package in ("numpy", "scipy", "numba", "pybullet"):
         found[package] = metadata.version(package)
@@ -35,12 +35,12 @@ def versions() -> Dict[str, str]:
 
 
 def processor(cpuinfo: Path = CPUINFO) -> str:
-    """Kind of the first processor and its widest vector units, which numpy and numba compute with."""
+    """Return the model of the first processor and its widest vector unit, which numpy and numba use."""
     try:
-        told = cpuinfo.read_text(encoding="utf-8", errors="replace").split("\n\n")[0]
+        first_entry = cpuinfo.read_text(encoding="utf-8", errors="replace").split("\n\n")[0]
     except OSError:
         return "unknown"
-    lines = [line.partition(":") for line in told.splitlines()]
+    lines = [line.partition(":") for line in first_entry.splitlines()]
     facts = {key.strip(): value.strip() for key, _, value in lines}
     units = facts.get("flags", facts.get("Features", "")).split()
     kind = [before + facts[key] for key, before in KINDS.items() if facts.get(key)]
@@ -48,7 +48,7 @@ def processor(cpuinfo: Path = CPUINFO) -> str:
 
 
 def project_version() -> str:
-    """The version in this package.xml, as in those of the project's other packages."""
+    """Return the version in this package.xml, which is the same in all packages of the project."""
     package_xml = Path(__file__).resolve().parents[2] / "package.xml"
     return ElementTree.parse(package_xml).findtext("version", "unknown")
 

@@ -1,4 +1,4 @@
-"""The commands behind the scripts, one a module; a module that is put here is found."""
+"""Commands of the scripts, one a module; a new module needs no registration."""
 
 from home_service.command import CommandFolder
 

@@ -6,7 +6,7 @@ from home_service.options import ErrandOptions, GraphOptions
 
 @dataclass(frozen=True)
 class AddMarker(GraphOptions, ErrandOptions):
-    """Shows the object at pick-up, hides it, and shows it at drop-off, by the clock."""
+    """Show the object at pick-up, hide it, and show it at drop-off, by the clock."""
 
     def run(self) -> int:
         from home_service.inputs import read_errand

@@ -8,10 +8,10 @@ from supervision.command_line import argument, option
 
 @dataclass(frozen=True)
 class Cockpit:
-    """Shows a running ROS graph, or a recording, in the browser, and drives it."""
+    """Show and control a running ROS graph in the browser, or play a recording."""
 
     recordings: Tuple[Path, ...] = argument(
-        "bags, or folders of them or of runs, to be played",
+        "bags, or folders of bags or of runs, to play",
         default=(),
         type=Path,
         nargs="*",
@@ -21,7 +21,7 @@ class Cockpit:
         "127.0.0.1:0", "where the page is served; 0: a free port", metavar="[ADDRESS:]PORT"
     )
     tool: Optional[str] = option(None, "open this tool at once", metavar="NAME")
-    output: Path = option(Path("runs"), "where the run folder of a recording's show is made", type=Path)
+    output: Path = option(Path("runs"), "folder of run folders, for recordings", type=Path)
 
     def run(self) -> int:
         return self._show_recording() if self.recordings else self._show_graph()
@@ -53,8 +53,8 @@ class Cockpit:
 
 @dataclass(frozen=True)
 class RecordingView(RunOptions):
-    """A recording on show, until Ctrl-C."""
+    """A recording that is shown until Ctrl-C."""
 
-    tool: Optional[str] = option(None, "the tool that is open at first")
+    tool: Optional[str] = option(None, "tool that is open at first")
 
     is_interactive = True

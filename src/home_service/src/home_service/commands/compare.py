@@ -7,11 +7,11 @@ from supervision.command_line import argument, option
 
 @dataclass(frozen=True)
 class Compare:
-    """Puts two runs side by side: a table here, and a page."""
+    """Compare two runs: a table in the terminal, and a page."""
 
     first: Path = argument("folder of a run", type=Path, metavar="A")
     second: Path = argument("folder of another run", type=Path, metavar="B")
-    page: Optional[Path] = option(None, "where the page goes, not to B", type=Path, metavar="FILE")
+    page: Optional[Path] = option(None, "write the page to this file, not to B", type=Path, metavar="FILE")
 
     def run(self) -> int:
         from rich.console import Console

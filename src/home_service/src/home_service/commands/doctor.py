@@ -10,11 +10,11 @@ HEALTHY, UNHEALTHY, NOTHING_RUNS = 0, 1, 3
 
 @dataclass(frozen=True)
 class Doctor:
-    """Says what is running, what each node waits for, and what is wrong."""
+    """Report what is running, what each node waits for, and what is wrong."""
 
-    json: bool = option(False, "print for programs")
-    master: Optional[str] = option(None, "of the graph to look at, if there are several", metavar="URI")
-    seconds: float = option(2.0, "how long rates are measured", type=seconds)
+    json: bool = option(False, "print JSON")
+    master: Optional[str] = option(None, "master of the graph, if there are several", metavar="URI")
+    seconds: float = option(2.0, "time to measure rates [s]", type=seconds)
 
     def run(self) -> int:
         from home_service.doctor.diagnosis import as_json, as_text, problems

@@ -5,7 +5,7 @@ from home_service.options import ErrandOptions, GraphOptions
 
 @dataclass(frozen=True)
 class Follow(GraphOptions, ErrandOptions):
-    """Lets a second robot follow the first, while that does its errand."""
+    """Let a second robot follow the first one through its errand."""
 
     def run(self) -> int:
         from home_service.inputs import read_errand

@@ -6,20 +6,20 @@ from home_service.judging.verdict import ERRAND, MARKERS, OBJECTS
 from home_service.options import GraphOptions, MissionOptions
 from supervision.command_line import option
 
-# Without the simulator there is no run; what the others know is kept for the next of their name.
+# All nodes but the simulator are respawned, and resume from a checkpoint.
 RESPAWNED = ("amcl", "move_base", "map_server", "robot_state_publisher", "pick_objects", "add_markers")
 
 
 @dataclass(frozen=True)
 class HomeService(GraphOptions, MissionOptions):
-    """Fetches the object at the pick-up zone and delivers it at the drop-off zone."""
+    """Fetch the object at the pick-up zone and deliver it at the drop-off zone."""
 
     faults: Optional[Path] = option(
         None, "YAML with a list of faults; default: those of the mission", type=Path, metavar="FILE"
     )
     serve: bool = option(False, "wait for missions sent to the action deliver, until Ctrl-C")
     marker_source: str = option(
-        "tf", "what tells the marker where the robot is", choices=("tf", "amcl_pose", "odom", "state")
+        "tf", "source of the robot's pose for the marker", choices=("tf", "amcl_pose", "odom", "state")
     )
 
     @property
@@ -46,10 +46,10 @@ class HomeService(GraphOptions, MissionOptions):
         return run_to_completion(self, launch, places, {ERRAND, OBJECTS if self.mission else MARKERS})
 
     def _faults_file(self) -> str:
-        """The file with faults, if there are any."""
+        """Return the file with faults; empty if there are none."""
         faulty = self.faults or self.mission
         if faulty is None:
             return ""
-        from sim_bridge.faults import load_faults  # late: with it comes half of the simulator
+        from sim_bridge.faults import load_faults  # late: imports much of the simulator
 
         return str(faulty.resolve()) if load_faults(faulty) else ""

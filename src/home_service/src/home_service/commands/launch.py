@@ -8,7 +8,7 @@ from supervision.command_line import option
 
 @dataclass(frozen=True)
 class Launch(GraphOptions):
-    """Starts the simulated home with the robot in it, until Ctrl-C."""
+    """Start the simulated home with the robot in it, until Ctrl-C."""
 
     map: Optional[Path] = option(None, "show this map of the world with it", type=Path, metavar="FILE")
 

@@ -5,7 +5,7 @@ from home_service.options import MappingOptions
 
 @dataclass(frozen=True)
 class MapHome(MappingOptions):
-    """Lets the robot explore the world, saves its map, and scores it against the true one."""
+    """Let the robot explore the world, save its map, and score it against the true one."""
 
     def run(self) -> int:
         from home_service.inputs import read_world

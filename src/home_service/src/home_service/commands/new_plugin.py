@@ -12,7 +12,12 @@ PACKAGE_NAME = re.compile(r"[a-z][a-z0-9_]*")
 
 @dataclass(frozen=True)
 class PluginKind:
-    """``user``: the package that it is for; ``chosen``: how it is chosen there, for people."""
+    """A kind of plugin.
+
+    Attributes:
+        user: Package that uses it.
+        chosen: How it is selected there, for people.
+    """
 
     user: str
     chosen: str
@@ -31,7 +36,7 @@ KINDS = {
     "fault": PluginKind("sim_bridge", "faults: [{{kind: {plugin}, start: 8.0}}] in a mission or a scenario"),
     "world_generator": PluginKind("laboratory", "world: {{{plugin}: {{}}}} in a scenario"),
 }
-# By every plugin, beside the package that it is for.
+# Dependencies of every plugin, beside the package that uses it.
 USED = ("planar",)
 PACKAGE_XML = """<?xml version="1.0"?>
 <package format="3">
@@ -75,7 +80,7 @@ def test_it_keeps_its_contract(check):
 
 @dataclass(frozen=True)
 class NewPlugin:
-    """Lays out a catkin package with a planner, a model, a fault or another plugin of your own."""
+    """Create a catkin package with a planner, a model, a fault or another custom plugin."""
 
     name: str = argument("of the package, as my_planner", metavar="NAME")
     kind: str = argument("what it is to be", choices=tuple(KINDS), metavar="KIND")
@@ -87,14 +92,14 @@ class NewPlugin:
         folder = self.source / self.name
         if not PACKAGE_NAME.fullmatch(self.name):
             raise SettingsError(
-                f"{self.name} is no name of a package: lower case, digits and _, as my_planner"
+                f"{self.name} is no package name: use lower-case letters, digits and _, as in my_planner"
             )
         if folder.exists():
-            raise SettingsError(f"{folder} is there already")
+            raise SettingsError(f"{folder} exists already")
         for path, text in self._texts().items():
             (folder / path).parent.mkdir(parents=True, exist_ok=True)
             write_atomically(folder / path, text.encode())
-        print(f"{folder}/src/{self.name}/{self.kind}.py is yours to write; then")
+        print(f"{folder}/src/{self.name}/{self.kind}.py is where to start; then")
         print(f"  ./scripts/test.sh unit {self.name}")
         print(f"  {KINDS[self.kind].chosen.format(plugin=self._plugin)}")
         return 0
@@ -108,7 +113,7 @@ class NewPlugin:
         return f"{self.name}.{self.kind}/{self._class}"
 
     def _texts(self) -> Dict[str, str]:
-        """All files of the package."""
+        """Return the files of the package."""
         title = self.name.replace("_", " ").capitalize()
         user = KINDS[self.kind].user
         words = {

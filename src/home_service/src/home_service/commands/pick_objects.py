@@ -6,7 +6,7 @@ from home_service.options import GraphOptions, MissionOptions
 
 @dataclass(frozen=True)
 class PickObjects(GraphOptions, MissionOptions):
-    """Carries out a mission, by default from the pick-up to the drop-off zone."""
+    """Carry out a mission, by default from the pick-up to the drop-off zone."""
 
     def run(self) -> int:
         from home_service.inputs import read_mission

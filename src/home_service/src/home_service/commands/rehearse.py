@@ -8,7 +8,7 @@ from supervision.command_line import option
 
 @dataclass(frozen=True)
 class Rehearse(MissionOptions):
-    """Plays the home-service mission in one process, without ROS: fast and repeatable."""
+    """Run the home-service mission in one process, without ROS: fast and repeatable."""
 
     runs: int = option(1, "how many runs, each with the next seed", type=count)
     faults: Optional[Path] = option(
@@ -16,7 +16,7 @@ class Rehearse(MissionOptions):
     )
     each_fault: Optional[Path] = option(
         None,
-        "play with each kind of fault beside a clean twin instead, and write the table to this page",
+        "instead compare each kind of fault with its baseline, and write the table to this page",
         type=Path,
         metavar="FILE",
     )
@@ -26,7 +26,7 @@ class Rehearse(MissionOptions):
         return self._run_episodes() if self.each_fault is None else self._compare(self.each_fault)
 
     def _compare(self, table: Path) -> int:
-        """With each kind of fault; 1 if a verdict was false, or most runs failed that need not have."""
+        """Compare each kind of fault; return 1 after a false verdict or a needless failure."""
         from home_service.headless.fault_comparison import FaultComparison, FaultComparisonRow, fault_report
         from home_service.inputs import read_mission
         from planar import write_atomically
@@ -66,6 +66,6 @@ class Rehearse(MissionOptions):
                 flush=True,
             )
             if run.diagnosis:
-                print(f"  not trusted: {run.diagnosis}", flush=True)
+                print(f"  implausible sensor: {run.diagnosis}", flush=True)
         print(f"{successes} of {self.runs} succeeded")
         return 0 if successes == self.runs else 1

@@ -9,7 +9,7 @@ from supervision.command_line import argument, option
 
 @dataclass(frozen=True)
 class Replay(RunOptions):
-    """Plays recorded bags to localization or mapping, and measures what they make of them."""
+    """Play recorded bags to localization or mapping, and measure the result."""
 
     bags: Tuple[Path, ...] = argument(
         "bags, or folders of them or of runs", default=(), type=Path, nargs="+", metavar="BAG"
@@ -49,7 +49,7 @@ class Replay(RunOptions):
         if self.estimator == "recorded":
             return recording_plan(bags)
         if self.estimator == "amcl":
-            load_map(self.map)  # so that a mistake is told before anything is started
+            load_map(self.map)  # so that a mistake is reported before anything is started
         x, y, yaw = self.start
         arguments = {
             "bags": os.pathsep.join(str(path.resolve()) for path in bags),

@@ -6,7 +6,7 @@ from supervision.command_line import argument, option
 
 @dataclass(frozen=True)
 class Report:
-    """Makes the report of a run anew, from what its folder holds."""
+    """Write the report of a run again, from its folder."""
 
     folder: Path = argument("folder of a run", type=Path, metavar="RUN")
     gif: bool = option(False, "also make run.gif, the run as an animation")

@@ -6,7 +6,7 @@ from supervision.command_line import argument
 
 @dataclass(frozen=True)
 class Reproduce:
-    """Runs again what has left a run folder, and says whether it was the same."""
+    """Repeat a run from its folder, and report whether it was the same."""
 
     folder: Path = argument("run folder", type=Path, metavar="RUN")
 

@@ -7,7 +7,7 @@ from supervision.command_line import option
 
 
 def goal_list(text: str) -> List[List[float]]:
-    """Poses from "x y yaw; x y yaw" in metres and radians."""
+    """Parse poses from "x y yaw; x y yaw" [m, rad]."""
     goals = []
     for part in filter(str.strip, text.split(";")):
         try:
@@ -24,7 +24,7 @@ def goal_list(text: str) -> List[List[float]]:
 
 @dataclass(frozen=True)
 class TestNavigation(GraphOptions, DrivingOptions):
-    """Starts home, localization and navigation; goals by hand or from --goals."""
+    """Start home, localization and navigation; goals by hand or from --goals."""
 
     goals: Optional[Tuple[Sequence[float], ...]] = option(
         None, "drive to these poses, then end", type=goal_list, metavar='"X Y YAW; X Y YAW"'

@@ -6,9 +6,9 @@ from supervision.command_line import option
 
 @dataclass(frozen=True)
 class TestSlam(MappingOptions):
-    """Starts home and SLAM, driven with keys (terminal or pipe), at the page, or by itself; saves the map."""
+    """Start home and SLAM, driven by keyboard, in the cockpit or by the explorer; save the map."""
 
-    drive: str = option("keys", "who drives the robot", choices=("keys", "page", "auto"))
+    drive: str = option("keys", "how the robot is driven", choices=("keys", "page", "auto"))
 
     @property
     def is_interactive(self) -> bool:

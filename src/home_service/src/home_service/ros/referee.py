@@ -18,8 +18,8 @@ from visualization_msgs.msg import Marker
 from home_service.judging.delivery_monitor import DeliveryMonitor
 from home_service.judging.marker_log import MarkerLog, MarkerState
 from home_service.judging.verdict import FINAL_STATES, MissionRecord, Verdict, collision, judge
+from home_service.ros import subscribe
 from home_service.ros.goal_monitor import GoalMonitor
-from home_service.ros.subscription import subscribe
 from pick_objects import Delivery, DeliveryStage, parse_mission
 from planar import PlanarError, Pose2
 from planar.maps.places import NamedPlace

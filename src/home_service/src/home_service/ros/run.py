@@ -149,8 +149,8 @@ class Run:
         self.display.print(f"run folder {self.folder}")
         speed = {"speed": self._options.effective_speed, "rviz": str(self._options.rviz).lower()}
         launch = self._launch
-        audience = {"audience": NODE} if launch.is_simulated else {}
-        arguments = {**launch.arguments, **speed, **audience}
+        observers = {"observers": NODE} if launch.is_simulated else {}
+        arguments = {**launch.arguments, **speed, **observers}
         self._supervisor.start(launch.package, launch.file, arguments, launch.respawned)
         if self._options.shows_cockpit:
             where = self._options.web_port or FREE_PORT

@@ -46,8 +46,8 @@ class MissionPublisher:
                 rospy.loginfo("%s", text)
         self._mission_state.publish(self.message(errand))
 
-    def wait_until_heard(self) -> None:
-        """Until all who listen have heard the last state; nothing can be shown afterwards."""
+    def flush(self) -> None:
+        """Publish the last state to all subscribers; nothing can be published afterwards."""
         flush_and_close(self._state, self._mission_state)
 
     def message(self, errand: Errand) -> msg.MissionState:

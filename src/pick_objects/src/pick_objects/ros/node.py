@@ -44,7 +44,7 @@ class PickObjectsNode:
         self._mission = self._read_mission()
         rospy.set_param("~places", sorted(self._places))  # for user interfaces
         self._errand: Optional[Errand] = None
-        self._keepsake = ParameterCheckpoint() if self._settings.resume else None
+        self._checkpoint = ParameterCheckpoint() if self._settings.resume else None
         self._lock = threading.Lock()
         self._navigation = NavigationClient(self._settings.frame_id)
         self._topics = MissionPublisher(self._settings.frame_id, lambda: self._navigation.base_in_map)
@@ -76,7 +76,7 @@ class PickObjectsNode:
 
     def finish(self) -> None:
         """Publish the final state to all subscribers; with ``~resume`` keep running until shutdown."""
-        self._topics.wait_until_heard()
+        self._topics.flush()
         while self._settings.resume and not rospy.is_shutdown():
             self._step.pause(POLL_SECONDS)
 
@@ -109,8 +109,8 @@ class PickObjectsNode:
             with self._lock:
                 order = self._errand.advance(rospy.get_time(), event)
                 self._topics.publish(self._errand)
-                if self._keepsake is not None:
-                    self._keepsake.keep(checkpoint_of(self._errand))
+                if self._checkpoint is not None:
+                    self._checkpoint.keep(checkpoint_of(self._errand))
                 if isinstance(order, FinishTask):
                     self._navigation.move_base.cancel_all()
                     return order
@@ -126,7 +126,7 @@ class PickObjectsNode:
 
     def _errand_for(self, mission: Mission) -> Errand:
         """Resume the errand from a checkpoint, if there is one."""
-        found = None if self._keepsake is None else self._keepsake.found
+        found = None if self._checkpoint is None else self._checkpoint.found
         errand = None if found is None else resume_errand(mission, found)
         return errand or Errand(mission)
 

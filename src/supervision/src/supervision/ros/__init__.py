@@ -1,1 +1,1 @@
-"""The graph of nodes that is supervised, and what its master and nodes answer."""
+"""Supervised graph of nodes, and queries to its master and nodes."""

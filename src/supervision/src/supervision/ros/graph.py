@@ -1,4 +1,4 @@
-"""A ROS graph of its own: a master on a free port and everything that a launch file starts."""
+"""A ROS graph with a separate master on a free port."""
 
 import contextlib
 import os
@@ -20,7 +20,7 @@ from supervision.node_exits import NodeExits, describe_exit
 from supervision.processes import SIGTERM_SECONDS, adopt_orphans, end_descendants
 
 SIGINT_SECONDS = 8.0
-HEARING_SECONDS = 2.0
+REACTION_SECONDS = 2.0
 CORE = ("roslaunch", "rosmaster", "rosout")
 CORE_SECONDS = 0.1
 POLL_SECONDS = 0.02
@@ -29,10 +29,23 @@ FIRST_PORT, FIRST_OUTGOING_PORT = 20000, 32768
 
 
 class RosGraph:
-    """Runs ``roslaunch`` under a master of its own; leaves no process behind when it is closed, or killed.
+    """Runs ``roslaunch`` with a separate master; no process is left when it is closed or killed.
 
-    What roslaunch prints, and each node on stderr, goes to ``log_folder``/roslaunch.log. ``deaths``: of
-    nodes; those in ``comes_back`` the launch file has started again.
+    The output of roslaunch, and of each node on stderr, goes to ``log_folder``/roslaunch.log.
+
+    Args:
+        package: Package of the launch file.
+        launch_file: Name of the launch file.
+        arguments: Its arguments; those of None are left out.
+        log_folder: Folder of the logs.
+        respawned: Nodes that the launch file restarts.
+
+    Attributes:
+        exits: Exits of nodes.
+        log_gap: Why the log is incomplete; None if it is complete.
+
+    Raises:
+        LaunchError: If roslaunch is not installed or no port is free.
     """
 
     def __init__(
@@ -74,12 +87,12 @@ class RosGraph:
 
     @property
     def how_it_ended(self) -> str:
-        """Of roslaunch, once it does not run any more."""
+        """How roslaunch has ended, in words."""
         code = self._roslaunch.poll() or 0
         return describe_exit(code) if code < 0 else "ended"
 
     def close(self) -> None:
-        """Ends every process of the graph: SIGINT first, then SIGTERM, then SIGKILL."""
+        """End every process of the graph by SIGINT, SIGTERM and SIGKILL in turn."""
         if self.is_running:
             os.killpg(self._roslaunch.pid, signal.SIGINT)
         self._wait_for_roslaunch()
@@ -87,17 +100,17 @@ class RosGraph:
         self._pump.join(1.0)
 
     def _wait_for_roslaunch(self) -> None:
-        """Patiently while it ends nodes; it may not hear before it has any."""
+        """Wait longer while roslaunch ends nodes; before it has any it may miss the signal."""
         started = time.monotonic()
         while self.is_running:
             ends_nodes = self._is_ending.is_set() and bool(self._nodes())
             is_done = self._is_ending.is_set() and not ends_nodes
-            if is_done or time.monotonic() - started > (SIGINT_SECONDS if ends_nodes else HEARING_SECONDS):
+            if is_done or time.monotonic() - started > (SIGINT_SECONDS if ends_nodes else REACTION_SECONDS):
                 return
             time.sleep(POLL_SECONDS)
 
     def _nodes(self) -> List[psutil.Process]:
-        """What roslaunch has started, but for its master and rosout, which have nothing to finish."""
+        """Return the processes of nodes, without master and rosout, which need no time to end."""
         nodes = []
         with contextlib.suppress(psutil.NoSuchProcess):
             for process in psutil.Process(self._roslaunch.pid).children(recursive=True):
@@ -108,7 +121,7 @@ class RosGraph:
         return nodes
 
     def _read_output(self) -> None:
-        """Reads on whatever happens to the log, since roslaunch stands still when nobody reads."""
+        """Read the output even if the log cannot be written, since roslaunch blocks if its pipe is full."""
         log: Optional[IO[str]] = None
         with contextlib.suppress(OSError):
             log = (self._log_folder / "roslaunch.log").open("w", encoding="utf-8", buffering=1)
@@ -126,10 +139,12 @@ class RosGraph:
 
 
 def free_port() -> int:
-    """A TCP port on the loopback interface that nobody listens on right now.
+    """Return a free TCP port on the loopback interface.
 
-    It lies below those that the system hands out for outgoing connections: one of these, of another graph for
-    example, might take it before a master listens there.
+    It is below the ports for outgoing connections, one of which might be taken before the master listens.
+
+    Raises:
+        LaunchError: If no port is free.
     """
     ports = range(FIRST_PORT, FIRST_OUTGOING_PORT)
     for port in random.Random().sample(ports, len(ports)):

@@ -1,4 +1,4 @@
-"""What the master and the nodes answer when asked by XML-RPC, none of which is waited for long."""
+"""XML-RPC queries to the master and the nodes, with short time-outs."""
 
 import xmlrpc.client
 from contextlib import suppress
@@ -15,7 +15,7 @@ _SILENCE = (OSError, xmlrpc.client.Error)
 
 
 class _TimedTransport(xmlrpc.client.Transport):
-    """A transport that gives up on a node that hangs."""
+    """Transport with a time-out, for nodes that hang."""
 
     def make_connection(self, host):
         connection = super().make_connection(host)
@@ -24,14 +24,14 @@ class _TimedTransport(xmlrpc.client.Transport):
 
 
 def is_master_online() -> bool:
-    """As rosgraph's function of that name, but what interrupts it is not lost."""
+    """Whether the master responds, as in rosgraph; an interruption during the call is not lost."""
     is_online = rosgraph.is_master_online()
     raise_if_interrupted()
     return is_online
 
 
 def answers(uri: str) -> bool:
-    """Whether the master or node at ``uri`` is alive."""
+    """Whether the master or node at ``uri`` responds."""
     try:
         code, _pid = _ask(uri, "getPid")
     except _SILENCE:
@@ -40,7 +40,7 @@ def answers(uri: str) -> bool:
 
 
 def node_names() -> Set[str]:
-    """The nodes that publish, subscribe or serve; none if the master does not answer."""
+    """Return the nodes that publish, subscribe or serve; none if the master does not respond."""
     try:
         _code, state = _ask(rosgraph.get_master_uri(), "getSystemState")
     except _SILENCE:
@@ -49,7 +49,7 @@ def node_names() -> Set[str]:
 
 
 def unresponsive_nodes() -> List[str]:
-    """The nodes that the master knows and that do not answer, without the slash."""
+    """Return registered nodes that do not respond, without the leading slash."""
     uri = rosgraph.get_master_uri()
     silent = []
     for name in sorted(node_names()):
@@ -73,13 +73,13 @@ def receives_all(node: str, topics: Container[str]) -> bool:
 
 
 def _receivers(uri: str) -> Set[Tuple[str, str]]:
-    """Each topic that a node sends, with the node that it is sent to."""
+    """Return each topic that a node sends, with the receiving node."""
     _code, connections = _ask(uri, "getBusInfo")
     return {(topic, peer) for _, peer, direction, _, topic, *_ in connections if direction == "o"}
 
 
 def _ask(uri: str, question: str, *arguments: str) -> Tuple[int, Any]:
-    """The code and the value of what a master or node answers."""
+    """Return code and value of a call."""
     proxy: Any = xmlrpc.client.ServerProxy(uri, transport=_TimedTransport())
     code, _status, value = getattr(proxy, question)(CALLER, *arguments)
     return code, value

@@ -1,4 +1,4 @@
-"""A graph under supervision: brought up, watched until its work is done, ended."""
+"""Supervision of a graph: start it, watch it until its work is done, end it."""
 
 import threading
 import time
@@ -19,10 +19,15 @@ BRING_UP_SECONDS = 60.0
 
 
 class Supervisor:
-    """Starts a graph, waits for its parts, and notices when it cannot go on; Ctrl-C is heard meanwhile."""
+    """Starts a graph, waits for its parts, and detects when it cannot continue; Ctrl-C is handled meanwhile.
+
+    Args:
+        display: Terminal output.
+        log_folder: Folder of the logs.
+        time_limit: Wall-clock time from now after which ``watch`` fails [s].
+    """
 
     def __init__(self, display: Display, log_folder: Path, time_limit: float):
-        """``time_limit``: wall-clock seconds from now after which a watch gives up."""
         self._display, self._log_folder, self._time_limit = display, log_folder, time_limit
         self._deadline = time.monotonic() + time_limit
         self._graph: Optional[RosGraph] = None
@@ -36,11 +41,23 @@ class Supervisor:
         arguments: Mapping[str, object],
         respawned: Collection[str] = (),
     ) -> None:
-        """Launches the graph; nodes in ``comes_back`` may die, and are started again. Raises LaunchError."""
+        """Launch the graph.
+
+        Raises:
+            LaunchError: If it cannot be launched.
+        """
         self._graph = RosGraph(package, launch_file, arguments, self._log_folder, respawned)
 
     def wait_for(self, what: str, is_there: Callable[[], bool]) -> None:
-        """Waits for a part of the graph. Raises LaunchError if it does not come."""
+        """Wait for a part of the graph.
+
+        Args:
+            what: Name of the part in messages.
+            is_there: Whether it is available.
+
+        Raises:
+            LaunchError: If it does not become available.
+        """
         deadline = time.monotonic() + BRING_UP_SECONDS
         while not is_there():
             failure = self._failure(f" before {what} was there")
@@ -52,9 +69,14 @@ class Supervisor:
             time.sleep(POLL_SECONDS)
 
     def run_in_thread(self, what: str, work: Callable[[], object]) -> None:
-        """Does ``work`` in a thread, for which what asks the master may wait for ever once that is gone.
+        """Run ``work`` in a thread, since calls to a dead master may block for ever.
 
-        An OSError of it is the master's end. Raises LaunchError then.
+        Args:
+            what: Name of the work in messages.
+            work: Function; an OSError in it means that the master has died.
+
+        Raises:
+            LaunchError: If the graph ends before the work is done.
         """
         working = self._work = Future()
 
@@ -62,7 +84,7 @@ class Supervisor:
             try:
                 working.set_result(work())
             except OSError:
-                pass  # what became of the graph says why
+                pass  # the failure of the graph explains it
             except Exception as error:
                 working.set_exception(error)
 
@@ -72,11 +94,15 @@ class Supervisor:
 
     @property
     def has_pending_work(self) -> bool:
-        """Whether something that was to be carried out is not, and will not be."""
+        """Whether work in a thread has not ended, and never will."""
         return self._work is not None and not self._work.done()
 
     def watch(self, is_over: Callable[[], bool], status: Callable[[], str]) -> Optional[str]:
-        """Shows how things stand until ``is_over``; returns why it cannot come to that, or None."""
+        """Show the status until ``is_over``.
+
+        Returns:
+            Why it cannot be reached, or None once it is.
+        """
         while not is_over():
             failure = self._failure()
             if failure is None and time.monotonic() > self._deadline:
@@ -89,7 +115,7 @@ class Supervisor:
         return None
 
     def end(self) -> None:
-        """Ends every process of the graph, also of one whose start was interrupted."""
+        """End every process of the graph, also if its start was interrupted."""
         if self._graph is not None:
             self._graph.close()
         else:
@@ -97,27 +123,27 @@ class Supervisor:
 
     @property
     def end_of_graph(self) -> Optional[str]:
-        """Why nothing runs any more, or None; also after Ctrl-C. Raises LaunchError as ``watch`` does."""
+        """Why the graph has ended, or None; also after Ctrl-C. Raises LaunchError as ``watch`` does."""
         is_running = self._graph is not None and self._graph.is_running
         return None if is_running else self._failure_of_graph()
 
     @property
     def log_gap(self) -> Optional[str]:
-        """What is missing of the graph's log, and why."""
+        """Why the graph's log is incomplete; None if it is complete."""
         return None if self._graph is None else self._graph.log_gap
 
     @property
     def restarts(self) -> List[Restart]:
-        """The nodes that died and came back."""
+        """Nodes that died and were restarted."""
         return [] if self._graph is None else self._graph.exits.restarts
 
     def _show_restarts(self) -> None:
         for restart in self.restarts[self._restarts_shown :]:
-            self._display.print(f"{restart.node}: {restart.reason}: started again")
+            self._display.print(f"{restart.node}: {restart.reason}, restarted")
             self._restarts_shown += 1
 
     def _failure(self, when: str = "") -> Optional[str]:
-        """Why the graph cannot go on. Raises LaunchError if a node refused its input."""
+        """Return why the graph cannot continue; raises LaunchError if a node rejected its input."""
         raise_if_interrupted()
         return self._failure_of_graph(when)
 
@@ -135,6 +161,6 @@ class Supervisor:
 
 
 def _describe_unresponsive_nodes() -> str:
-    """Of nodes that are there and do not answer, for the end of a sentence."""
+    """Name unresponsive nodes, for the end of a sentence."""
     silent = unresponsive_nodes()
     return f"; no answer of {', '.join(silent)}" if silent else ""
