@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Somebody's project, C++ and xterm, runs as it is: the real actionlib client is served by our move_base."""
+"""A project in C++ with xterm runs unmodified: a real actionlib client uses move_base of this workspace."""
 
 import hashlib
 import json
@@ -24,9 +24,9 @@ EXIT_SECONDS = 30.0
 
 
 class WithoutCompilerTest(unittest.TestCase):
-    """As in the image, where nobody may install one."""
+    """As in the container image, where no compiler can be installed."""
 
-    def test_a_project_is_refused_naming_what_is_missing(self):
+    def test_a_project_is_rejected_with_the_missing_tool(self):
         refused = subprocess.run(
             [str(SCRIPT), str(SAMPLE)], capture_output=True, text=True, timeout=RUN_SECONDS, check=False
         )
@@ -40,11 +40,11 @@ class RunProjectTest(unittest.TestCase):
         self._mark = uuid.uuid4().hex
         self._folder = Path(tempfile.mkdtemp())
         self.addCleanup(shutil.rmtree, self._folder)
-        self._checkout = self._folder / f"somebodys_project_{self._mark}"
+        self._checkout = self._folder / f"user_project_{self._mark}"
         shutil.copytree(SAMPLE, self._checkout)
         self.addCleanup(remove_work_folder, self._checkout)
 
-    def test_a_project_is_built_run_and_judged_without_a_trace(self):
+    def test_a_project_is_built_run_and_judged_without_changing_it(self):
         hash_before = _hash_of(self._checkout)
         run = self._start(self._checkout)
         output, _ = run.communicate(timeout=RUN_SECONDS)
@@ -81,7 +81,7 @@ class RunProjectTest(unittest.TestCase):
         print(f"nothing left {time.monotonic() - started:.1f} s after it was killed")
         self.assertEqual(processes_with(self._mark), [])
 
-    def test_what_is_no_project_is_refused_in_one_line(self):
+    def test_an_invalid_path_is_rejected_in_one_line(self):
         for path, words in ((self._folder / "nowhere", "no such folder"), (self._folder, "")):
             with self.subTest(path=path):
                 shutil.rmtree(self._checkout, ignore_errors=True)
@@ -91,7 +91,7 @@ class RunProjectTest(unittest.TestCase):
                 self.assertRegex(output, rf"(?m)^error: .*{words}")
                 self.assertNotIn("Traceback", output)
 
-    def test_the_last_words_of_a_script_that_gives_up_are_the_reason(self):
+    def test_the_last_line_of_a_failing_script_is_the_reason(self):
         script = self._checkout / "catkin_ws/src/scripts/home_service.sh"
         script.write_text("#!/bin/sh\necho give me the workspace\nexit 3\n")
         output, _ = self._start(self._checkout).communicate(timeout=RUN_SECONDS)
@@ -109,7 +109,7 @@ class RunProjectTest(unittest.TestCase):
 
 
 def _hash_of(folder):
-    """Of all names, modes, times and contents."""
+    """Hash of all names, modes, times and contents."""
     digest = hashlib.sha256()
     for path in sorted(folder.rglob("*")):
         status = path.lstat()
@@ -120,7 +120,7 @@ def _hash_of(folder):
 
 
 def _mounts_of(checkout):
-    """Mounts that name the checkout, or the work folder that is named after it; others mount things too."""
+    """Mounts of the checkout, or of the work folder named after it; other programs mount as well."""
     return [line for line in Path("/proc/self/mounts").read_text().splitlines() if checkout.name in line]
 
 

@@ -30,7 +30,7 @@ CMake Error at worlds/CMakeLists.txt:7 (find_package):
 """
 
 
-def test_programs_can_be_executed_even_if_git_does_not_know_that_they_can(tmp_path):
+def test_programs_are_made_executable_in_the_copy(tmp_path):
     files = {
         "pick/package.xml": "<package><name>pick</name></package>",
         "pick/scripts/home.py": "#!/usr/bin/env python\n",
@@ -50,14 +50,14 @@ def test_programs_can_be_executed_even_if_git_does_not_know_that_they_can(tmp_pa
     assert not (workspace.checkout / "build/pick.make").exists()
 
 
-def test_packages_that_cannot_be_configured_are_told_with_the_reason(tmp_path):
+def test_packages_that_cannot_be_configured_are_listed_with_the_reason(tmp_path):
     packages = {name: tmp_path / "src" / name for name in ("maps", "worlds", "pick")}
     broken = broken_configurations(
         Workspace(tmp_path, tmp_path / "src", packages, tmp_path / "pretended"), OUTPUT
     )
     assert broken == {
         "maps": "Could NOT find Protobuf (missing: Protobuf_LIBRARIES)",
-        "worlds": "needs gazebo, which is not there",
+        "worlds": "needs gazebo, which is not installed",
     }
 
 
@@ -69,7 +69,7 @@ CMake Generate step failed.  Build files cannot be regenerated correctly.
 """
 
 
-def test_what_is_to_be_built_after_messages_that_nobody_generates_is_built(tmp_path, monkeypatch):
+def test_a_dependency_on_message_targets_that_do_not_exist_is_ignored(tmp_path, monkeypatch):
     (tmp_path / "devel").mkdir()
     (tmp_path / "devel/setup.bash").touch()
     workspace = Workspace(tmp_path, tmp_path / "src", {}, tmp_path / "pretended")
@@ -80,7 +80,7 @@ def test_what_is_to_be_built_after_messages_that_nobody_generates_is_built(tmp_p
     assert (outputs, workspace.unbuilt) == ([], set())
 
 
-def test_the_model_of_a_turtlebot3_is_assumed_where_nobody_says_it(tmp_path, monkeypatch):
+def test_turtlebot3_model_has_a_default(tmp_path, monkeypatch):
     (tmp_path / "devel").mkdir()
     (tmp_path / "devel/setup.bash").touch()
     workspace = Workspace(tmp_path, tmp_path / "src", {}, tmp_path / "pretended", ())
@@ -90,7 +90,7 @@ def test_the_model_of_a_turtlebot3_is_assumed_where_nobody_says_it(tmp_path, mon
     assert environment(workspace)["TURTLEBOT3_MODEL"] == "waffle"
 
 
-def test_models_are_found_where_they_lie_after_the_folders_that_the_project_names(tmp_path):
+def test_model_folders_are_appended_to_the_gazebo_model_path_of_the_project(tmp_path):
     (tmp_path / "devel").mkdir()
     (tmp_path / "devel/setup.bash").write_text("export GAZEBO_MODEL_PATH=/theirs")
     models = (tmp_path / "src/models", tmp_path / "src/world")

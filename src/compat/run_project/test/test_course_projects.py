@@ -1,4 +1,4 @@
-"""Projects of the course are recognised by their launch files, and judged by what came of each trial."""
+"""Course projects are recognized by their launch files, and judged by their checks."""
 
 from pathlib import Path
 
@@ -26,28 +26,28 @@ def test_a_robot_with_a_world_and_process_image_chases_a_ball():
     )
 
 
-def test_the_last_project_that_is_there_counts_as_each_contains_the_earlier_ones():
+def test_the_last_project_is_selected_because_each_contains_the_earlier_ones():
     amcl = {"my_robot/launch/amcl.launch": AMCL}
     assert planned(amcl).project is CourseProject.LOCALIZE
     assert planned({**amcl, "my_robot/launch/mapping.launch": RTABMAP}).project is CourseProject.MAP
 
 
-def test_an_earlier_one_may_be_named():
+def test_an_earlier_project_can_be_selected_by_name():
     assert planned({"my_robot/launch/amcl.launch": AMCL}, "go_chase_it").project is CourseProject.CHASE
     assert planned(wanted="map_my_world") is None
 
 
-def test_mapping_is_begun_without_a_database():
+def test_mapping_starts_without_a_database():
     files = {"my_robot/launch/localization.launch": RTABMAP, "my_robot/launch/rtab.launch": RTABMAP}
     assert planned(files).launches == ("my_robot world.launch", "my_robot rtab.launch")
 
 
-def test_a_launch_file_that_brings_the_world_along_needs_no_other():
+def test_a_launch_file_that_includes_the_world_is_sufficient():
     files = {"my_robot/launch/amcl.launch": AMCL + '<include file="$(find my_robot)/launch/world.launch"/>'}
     assert planned(files).launches == ("my_robot amcl.launch",)
 
 
-def test_a_launch_file_called_as_most_call_it_may_start_all_in_files_of_their_own():
+def test_a_launch_file_with_the_usual_name_may_include_the_nodes():
     included = '<include file="$(find my_robot)/launch/parts/node.launch"/>'
     files = {
         "my_robot/launch/amcl.launch": f"<launch>{included}</launch>",
@@ -58,7 +58,7 @@ def test_a_launch_file_called_as_most_call_it_may_start_all_in_files_of_their_ow
     assert planned(files).launches[1] == "my_robot node.launch"
 
 
-def test_arguments_that_a_launch_file_lacks_are_those_that_its_author_gives():
+def test_required_arguments_are_taken_from_the_scripts_of_the_author():
     files = {
         "my_robot/launch/world.launch": WORLD + '<arg name="gui" default="true"/> $(arg gui) $(arg map)',
         "a.sh": "roslaunch my_robot world.launch gui:=false\n",
@@ -73,11 +73,11 @@ def test_arguments_that_a_launch_file_lacks_are_those_that_its_author_gives():
     assert planned(files).launches[0] == "my_robot world.launch"
 
 
-def test_what_stands_in_comments_starts_nothing():
+def test_nodes_in_comments_are_ignored():
     assert find_launch_plan(PACKAGES, {"my_robot/launch/a.launch": f"<!-- {AMCL} -->"}, None) is None
 
 
-def test_its_script_opens_a_window_for_each_launch_file():
+def test_the_script_opens_a_window_for_each_launch_file():
     lines = planned().script().splitlines()
     assert lines[1:] == [
         'xterm -e "roslaunch my_robot world.launch" &',
@@ -86,12 +86,12 @@ def test_its_script_opens_a_window_for_each_launch_file():
     ]
 
 
-def test_a_lesson_succeeds_if_all_that_was_tried_went_well():
+def test_a_course_project_succeeds_if_all_checks_passed():
     results = CheckResults()
-    assert not results.verdict().success, "nothing was tried"
+    assert not results.verdict().success, "nothing was checked"
     results.add(True, "chased the ball")
     assert results.verdict().success
-    assert results.verdict().reason == "1 of 1 as meant: chased the ball"
+    assert results.verdict().reason == "1 of 1 checks passed: chased the ball"
     assert not results.verdict("interrupted").success
-    results.add(False, "goes on without it")
+    results.add(False, "did not stop after the ball was removed")
     assert not results.verdict().success

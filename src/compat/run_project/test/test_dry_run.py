@@ -19,7 +19,7 @@ def dry_run(tmp_path, text):
     return recorded_calls(script, tmp_path, ["--fast"]).splitlines()
 
 
-def test_paths_that_a_script_puts_together_are_told(tmp_path):
+def test_paths_composed_from_variables_are_recorded(tmp_path):
     lines = dry_run(tmp_path, SCRIPT.replace("{touched}", str(tmp_path / "touched")))
     assert "/home/workspace/catkin_ws/devel" in lines
     assert "/home/workspace/catkin_ws/devel/setup.bash" in lines
@@ -28,21 +28,21 @@ def test_paths_that_a_script_puts_together_are_told(tmp_path):
     assert "TURTLEBOT_GAZEBO_MAP_FILE=/home/workspace/catkin_ws/src/map/my_map.yaml" in lines
 
 
-def test_nothing_that_a_script_calls_is_done(tmp_path):
+def test_called_programs_are_not_executed(tmp_path):
     lines = dry_run(tmp_path, SCRIPT.replace("{touched}", str(tmp_path / "touched")))
     assert str(tmp_path / "touched") in lines
     assert not (tmp_path / "touched").exists()
-    assert "listening" not in "".join(lines)
+    assert "dry-run-" not in "".join(lines)
 
 
-def test_a_script_that_loops_for_ever_is_listened_to_for_a_while(tmp_path, monkeypatch):
+def test_a_script_that_loops_forever_is_stopped(tmp_path, monkeypatch):
     monkeypatch.setattr("run_project.checkout.dry_run.DRY_RUN_SECONDS", 0.5)
     assert "--once" in dry_run(tmp_path, "rosrun a b --once\nwhile true; do :; done\n")
 
 
-def test_a_script_that_reads_its_arguments_hears_them(tmp_path):
+def test_the_script_gets_its_arguments(tmp_path):
     assert "--fast" in dry_run(tmp_path, 'roslaunch a b "$1"\n')
 
 
-def test_a_script_in_another_language_tells_nothing(tmp_path):
+def test_a_script_in_another_language_is_not_run(tmp_path):
     assert dry_run(tmp_path, "#!/usr/bin/env python3\nprint(1)\n") == []

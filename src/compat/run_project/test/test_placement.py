@@ -21,14 +21,14 @@ def placed(checkout, script, text):
 FILES = ("pick/package.xml", "world/home.world", "scripts/home_service.sh")
 
 
-def test_a_checkout_that_was_the_src_of_a_workspace_is_put_there():
+def test_a_checkout_that_was_the_src_of_a_workspace_is_placed_there():
     text = "roslaunch a b world_file:=/home/author/catkin_ws/src/world/home.world"
     placement = placed(sources(*FILES), "scripts/home_service.sh", text)
     assert placement.checkout == Path("src")
     assert placement.mounts == {"/home/author/catkin_ws": Path()}
 
 
-def test_a_checkout_that_was_cloned_into_src_is_put_there_by_its_name():
+def test_a_checkout_that_was_cloned_into_src_is_placed_there_under_its_name():
     text = "roslaunch a b world_file:=/home/author/catkin_ws/src/robot/world/home.world"
     placement = placed(sources(*FILES), "scripts/home_service.sh", text)
     assert placement.checkout == Path("src/robot")
@@ -42,12 +42,12 @@ def test_a_checkout_that_was_cloned_into_src_is_put_there_by_its_name():
         ('WS=$( cd $(dirname "$0")/../../; pwd -P )', "src"),
     ],
 )
-def test_the_scripts_own_folder_tells_how_deep_the_checkout_lay(own, checkout):
+def test_the_depth_of_the_checkout_follows_from_paths_relative_to_the_script(own, checkout):
     text = f"{own}\nsource $WS/devel/setup.bash\n"
     assert placed(sources(*FILES), "scripts/home_service.sh", text).checkout == Path(checkout)
 
 
-def test_a_home_is_meant_whoever_lives_there():
+def test_home_folder_and_user_name_are_expanded():
     text = "source ~/catkin_ws/devel/setup.bash; cat /home/$USER/ws2/src/world/home.world"
     mounts = placed(sources(*FILES), "scripts/home_service.sh", text).mounts
     assert mounts == {"/home/me/catkin_ws": Path(), "/home/me/ws2": Path()}
@@ -61,16 +61,16 @@ def test_a_home_is_meant_whoever_lives_there():
         ("/home/me/catkin_ws", "cd $HOME/catkin_ws/src\nrosrun rviz rviz -d world/home.world"),
     ],
 )
-def test_a_folder_that_a_script_goes_to_is_provided_by_what_it_expects_there(home, line):
+def test_a_folder_that_a_script_changes_to_is_mounted_by_the_files_it_expects_there(home, line):
     assert placed(sources(*FILES), "scripts/home_service.sh", line).mounts == {home: Path()}
 
 
-def test_a_folder_that_a_script_goes_to_for_nothing_is_not_provided():
-    text = "cd /home/me/elsewhere && ls other/things.txt; cd /usr/share && cat doc/README.md"
+def test_a_folder_without_expected_files_is_not_mounted():
+    text = "cd /home/me/elsewhere && ls other/notes.txt; cd /usr/share && cat doc/README.md"
     assert placed(sources(*FILES), "scripts/home_service.sh", text).mounts == {}
 
 
-def test_the_workspace_below_a_repository_stays_below_it():
+def test_a_workspace_below_the_repository_stays_there():
     checkout = workspace("catkin_ws", "catkin_ws/src/world/home.world", "catkin_ws/src/go.sh")
     placement = placed(checkout, "catkin_ws/src/go.sh", "cat /home/workspace/catkin_ws/src/world/home.world")
     assert placement.workspace == Path("catkin_ws")
@@ -90,27 +90,27 @@ def test_the_workspace_below_a_repository_stays_below_it():
         ("rosparam load scripts/../world/home.world", "src"),
     ],
 )
-def test_a_script_starts_where_the_files_it_names_are_found(text, start):
+def test_a_script_starts_where_the_files_it_references_exist(text, start):
     assert placed(sources(*FILES), "scripts/home_service.sh", text).start == Path(start)
 
 
-def test_packages_are_found_as_rospack_does():
+def test_rospack_find_is_resolved():
     named = set(referenced_paths("cat $(rospack find pick)/../world/x", "/@", "/@", {"pick": "/@/src/pick"}))
     assert named == {"/@/src/world/x"}
 
 
-def test_comments_name_nothing():
+def test_comments_are_ignored():
     assert not list(referenced_paths("# cd x/y; cat a/b", "/@", "/@", {}))
 
 
 @pytest.mark.parametrize(
     "path", ["/gazebo/set_model_state", "/opt/ros/kinetic/setup.bash", "/usr/lib/ros/a.sh"]
 )
-def test_topics_and_the_systems_own_files_are_no_paths_of_the_project(path):
+def test_topics_and_system_files_are_not_paths_of_the_project(path):
     assert absolute_paths(f"cat {path}; curl http://a/b/c.d", "/home/me", "me") == set()
 
 
-def test_a_path_below_a_mount_is_found_in_its_source():
+def test_a_path_below_a_mount_is_resolved_to_its_source():
     mounts = {"/home/author/ws": Path()}
     assert resolve_mount("/home/author/ws/src/a", mounts) == Path("src/a")
     assert resolve_mount("/home/author/ws2/src/a", mounts) is None
@@ -128,7 +128,7 @@ MAP = "image: {}\nresolution: 0.05\n"
         ("/home/author/other.pgm", {}, {}),
     ],
 )
-def test_an_image_named_where_it_once_was_is_found_beside_its_map(named, mounts, links):
+def test_a_moved_map_image_is_found_beside_its_map(named, mounts, links):
     script = "scripts/home_service.sh"
     texts = {script: "cat /home/author/ws/src/maps/map.yaml", "maps/map.yaml": MAP.format(named)}
     checkout = sources(*FILES, "maps/map.yaml", "maps/map.pgm", "old_maps/map.pgm")

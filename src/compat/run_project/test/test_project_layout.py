@@ -37,12 +37,12 @@ def test_a_package_xml_at_the_top_is_one_package(tmp_path):
     assert checkout(tmp_path, "package.xml", "src/pick.cpp").kind is CheckoutKind.PACKAGE
 
 
-def test_what_a_build_left_behind_is_not_read(tmp_path):
+def test_build_folders_are_not_read(tmp_path):
     project = checkout(tmp_path, "src/pick/package.xml", "devel/share/old/package.xml", ".git/x/package.xml")
     assert sorted(project.packages) == ["pick"]
 
 
-def test_folders_of_models_are_found_wherever_they_are(tmp_path):
+def test_model_folders_are_found(tmp_path):
     project = checkout(
         tmp_path,
         *("src/pick/package.xml", "src/pick/models/chair/model.config", "src/pick/models/table/model.config"),
@@ -51,39 +51,39 @@ def test_folders_of_models_are_found_wherever_they_are(tmp_path):
     assert [str(folder) for folder in project.model_folders()] == ["src/pick/models", "world"]
 
 
-def test_a_folder_without_packages_is_refused_by_name(tmp_path):
+def test_a_folder_without_packages_is_rejected(tmp_path):
     with pytest.raises(ProjectError, match=r"no package\.xml"):
         read_checkout(tmp_path)
 
 
-def test_a_broken_package_xml_is_named(tmp_path):
+def test_an_invalid_package_xml_is_reported(tmp_path):
     (tmp_path / "package.xml").write_text("<package>")
     with pytest.raises(ProjectError, match=r"package\.xml: no element found"):
         read_checkout(tmp_path)
 
 
 @pytest.mark.parametrize("name", ["home_service.sh", "HomeService.sh", "test_home_service.sh"])
-def test_the_home_service_script_is_found_wherever_it_is(tmp_path, name):
+def test_the_home_service_script_is_found(tmp_path, name):
     project = checkout(tmp_path, "src/pick/package.xml", "src/scripts/pick.sh", f"src/scripts/{name}")
     assert choose_script(project, None).name == name
 
 
 @pytest.mark.parametrize("wanted", ["pick", "pick.sh", "src/scripts/pick.sh"])
-def test_another_script_is_named_by_stem_name_or_path(tmp_path, wanted):
+def test_another_script_is_selected_by_stem_name_or_path(tmp_path, wanted):
     project = checkout(tmp_path, "src/pick/package.xml", "src/scripts/pick.sh", "src/scripts/home_service.sh")
     assert str(choose_script(project, wanted)) == "src/scripts/pick.sh"
 
 
-def test_a_script_that_is_not_there_is_answered_with_those_that_are(tmp_path):
+def test_a_missing_script_is_reported_with_the_existing_ones(tmp_path):
     project = checkout(tmp_path, "src/pick/package.xml", "src/scripts/pick.sh")
     with pytest.raises(
         ProjectError,
-        match=r"no script home_service\.sh in it; name another of its scripts: src/scripts/pick\.sh",
+        match=r"no script home_service\.sh in this checkout; name one of its scripts: src/scripts/pick\.sh",
     ):
         choose_script(project, None)
 
 
-def test_maps_whose_image_is_not_there_are_known(tmp_path):
+def test_maps_without_image_are_found(tmp_path):
     checkout(tmp_path, "pick/package.xml", "maps/home.pgm", "old/office.pgm")
     for name, image in (("home", "home.pgm"), ("office", "/home/me/office.pgm"), ("attic", "attic.pgm")):
         (tmp_path / f"maps/{name}.yaml").write_text(f"image: {image}\nresolution: 0.05\norigin: [0, 0, 0]\n")
@@ -91,7 +91,7 @@ def test_maps_whose_image_is_not_there_are_known(tmp_path):
     assert read_checkout(tmp_path).maps_without_image() == ["maps/attic.yaml (attic.pgm)"]
 
 
-def test_what_git_lfs_has_not_fetched_is_known(tmp_path):
+def test_git_lfs_pointers_are_found(tmp_path):
     checkout(tmp_path, "pick/package.xml", "world/home.world")
     (tmp_path / "world/map.pgm").write_text("version https://git-lfs.github.com/spec/v1\noid sha256:0\n")
     assert read_checkout(tmp_path).lfs_pointers() == ["world/map.pgm"]

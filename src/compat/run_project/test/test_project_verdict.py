@@ -39,7 +39,7 @@ def test_a_goal_that_was_sent_again_until_it_was_reached_is_no_failure():
 @pytest.mark.parametrize(
     ("metres", "ending", "success"), [(0.3, PREEMPTED, True), (0.7, PREEMPTED, False), (0.3, ABORTED, False)]
 )
-def test_a_goal_that_is_cancelled_when_the_robot_is_there_is_reached(metres, ending, success):
+def test_a_goal_cancelled_near_the_robot_is_reached(metres, ending, success):
     record = ProjectRunRecord()
     record.add_goal(0.0, "goal", (1.0, 2.0))
     record.update_position((1.0 + metres, 2.0))
@@ -52,7 +52,7 @@ def test_a_goal_that_is_cancelled_when_the_robot_is_there_is_reached(metres, end
     ("expected", "success"),
     [(("aborted", "succeeded"), True), (("succeeded", "succeeded"), False), ((), False)],
 )
-def test_how_goals_end_can_be_declared(expected, success):
+def test_the_final_status_of_goals_can_be_declared(expected, success):
     verdict = judge(record_of(ABORTED, SUCCEEDED, places=(A, B)), expected=expected)
     assert verdict.success is success
     assert verdict.reason.startswith("1 of 2 goals reached; aborted, succeeded, ")
@@ -77,7 +77,7 @@ A, B, C = (1.0, 2.0), (3.0, 4.0), (5.0, 6.0)
         ((C, A, A, B, A, A, A, B, B), 8),
     ],
 )
-def test_a_project_that_goes_its_rounds_for_ever_is_recognized_after_two(places, goals):
+def test_an_endless_round_of_goals_is_recognized_after_two_rounds(places, goals):
     assert record_of(*[SUCCEEDED] * len(places), places=places).goals_of_two_rounds == goals
     assert record_of(ABORTED, *[SUCCEEDED] * (len(places) - 1), places=places).goals_of_two_rounds == 0
 
@@ -88,7 +88,7 @@ def test_the_goal_of_a_third_round_does_not_count():
     assert verdict.reason.startswith("4 of 4 goals reached")
 
 
-def test_of_a_marker_that_goes_with_the_robot_the_ends_are_told():
+def test_the_events_of_a_moving_marker_are_shortened():
     record = record_of(SUCCEEDED)
     for step in range(20):
         record.update_marker(float(step), ("parcel", 0), (float(step), 0.0))
@@ -100,11 +100,11 @@ def test_a_run_that_was_cut_short_is_a_failure():
     assert not judge(record_of(SUCCEEDED), "interrupted").success
 
 
-def test_a_project_that_did_nothing_failed():
+def test_a_project_without_goals_and_markers_fails():
     assert not judge(ProjectRunRecord()).success
 
 
-def test_markers_alone_are_enough_unless_the_script_is_an_errand():
+def test_markers_alone_are_sufficient_unless_goals_are_required():
     record = ProjectRunRecord()
     record.update_marker(0.0, ("shapes", 0), (1.0, 2.0))
     assert judge(record).success
@@ -112,7 +112,7 @@ def test_markers_alone_are_enough_unless_the_script_is_an_errand():
     assert not judge(record, requires_goals=True).success
 
 
-def test_a_status_is_told_once():
+def test_a_status_is_reported_once():
     record = ProjectRunRecord()
     assert record.update_status(1.0, "a", ACTIVE, "") == "goal 1 active"
     assert record.update_status(1.2, "a", ACTIVE, "") is None
@@ -121,7 +121,7 @@ def test_a_status_is_told_once():
     assert record.all_goals_ended
 
 
-def test_a_marker_tells_where_it_is_shown_and_when_it_is_hidden():
+def test_positions_and_hiding_of_a_marker_are_recorded():
     record = ProjectRunRecord()
     for place in ((1.0, 2.0), (1.0, 2.01), None, None, (3.0, 4.0)):
         record.update_marker(0.0, ("shapes", 0), place)
@@ -131,37 +131,37 @@ def test_a_marker_tells_where_it_is_shown_and_when_it_is_hidden():
 
 
 def blink(record, times):
-    """A marker that is shown and hidden, and two that are shown in turn with ever new numbers, for ever."""
+    """A marker that blinks, and one that is shown with a new id every time."""
     for second in range(times):
         record.update_marker(10.0 + second, ("blinking", 0), A)
         record.update_marker(10.5 + second, ("blinking", 0), None)
         record.update_marker(10.7 + second, ("renewed", second), B)
 
 
-def test_markers_that_blink_or_are_shown_anew_for_ever_are_no_news():
+def test_repeated_marker_events_are_not_new():
     record = record_of(SUCCEEDED)
     blink(record, 100)
     assert record.last_event_time < 12.0
     assert record.markers == ["shown at (1.00, 2.00)", "hidden", "shown at (3.00, 4.00)"]
 
 
-def test_what_a_marker_does_again_after_another_goal_is_news():
+def test_a_repeated_marker_event_is_new_after_another_goal():
     record = record_of(SUCCEEDED)
     blink(record, 2)
     record.add_goal(20.0, "another", B)
     assert record.update_marker(21.0, ("blinking", 0), A) == "marker shown at (1.00, 2.00)"
 
 
-def test_an_object_is_away_between_its_being_picked_up_and_set_down():
+def test_an_object_is_picked_up_while_its_marker_is_hidden():
     record = ProjectRunRecord()
-    away = [record.is_object_picked_up]
+    picked_up = [record.is_object_picked_up]
     for place in (A, None, B):
         record.update_marker(0.0, ("", 0), place)
-        away.append(record.is_object_picked_up)
-    assert away == [False, False, True, False]
+        picked_up.append(record.is_object_picked_up)
+    assert picked_up == [False, False, True, False]
 
 
-def test_distance_leaves_out_where_the_robot_was_put():
+def test_teleports_do_not_count_as_driven():
     record = ProjectRunRecord()
     for position in ((0.0, 0.0), (0.3, 0.2), (9.0, 9.0), (9.1, 9.0)):
         record.update_position(position)
@@ -185,23 +185,23 @@ Visualization Manager:
 
 
 @pytest.mark.parametrize("config", ["", "a: [", "- 1", "Visualization Manager: 3"])
-def test_a_configuration_that_cannot_be_read_displays_nothing(config):
+def test_an_invalid_rviz_configuration_displays_nothing(config):
     assert displayed_topics(config) == set()
 
 
-def test_the_velocity_smoother_passes_velocities_on():
+def test_the_velocity_smoother_is_replaced_by_a_relay():
     arguments = "load yocs_velocity_smoother/VelocitySmootherNodelet manager __name:=smoother".split()
     arguments.append("smoother/smooth_cmd_vel:=mux/input/navi")
     assert command_for(arguments)[3:5] == ["smoother/raw_cmd_vel", "mux/input/navi"]
     assert command_for(["manager"])[0] == "sleep"
 
 
-def test_complaints_are_errors_told_once_with_the_windows_name(tmp_path):
+def test_log_errors_are_listed_once_with_the_name_of_the_window(tmp_path):
     (tmp_path / "rosrun-pick.log").write_text("fine\n\x1b[31m[ERROR] [1]: lost\n[ERROR] [1]: lost\n")
     assert find_log_errors(tmp_path) == ["rosrun-pick: [ERROR] [1]: lost"]
 
 
-def test_who_bumps_against_the_same_thing_again_is_counted_but_not_told_again():
+def test_repeated_collisions_with_a_body_are_counted_but_reported_once():
     record = ProjectRunRecord()
     events = [record.add_collision(name) for name in ("sofa::link", "sofa::link", "wall::link", "sofa::link")]
     assert events == ["collision with sofa::link", None, "collision with wall::link", None]

@@ -19,5 +19,5 @@ def test_python_2_becomes_python_3(source, converted):
 
 
 @pytest.mark.parametrize("source", ["print('hello')\n", "\tno python at all (\n", "\0", ""])
-def test_all_else_stays_as_it_is(source):
+def test_other_texts_are_unchanged(source):
     assert to_python3(source) == source

@@ -1,4 +1,4 @@
-"""What is written of a project's run follows the schema of result.json."""
+"""The result of a project follows the schema of result.json."""
 
 import json
 from pathlib import Path
@@ -19,7 +19,7 @@ SCHEMA = Path(__file__).resolve().parents[3] / "home_service/config/result.schem
 
 
 class FakeRun:
-    """Stands for a run in which a goal is reached, or which is interrupted."""
+    """Fake of a run in which a goal is reached, or which is interrupted."""
 
     def __init__(self, is_interrupted):
         record = ProjectRunRecord()
@@ -49,8 +49,8 @@ def test_the_result_of_a_project_follows_the_published_schema(is_interrupted, co
     (tmp_path / "log/window.log").write_text("[ERROR] [12.0]: no map\n")
     command = ProjectCommand(["true"], tmp_path, {}, tmp_path)
     workspace = Workspace(tmp_path, tmp_path, {}, tmp_path, missing={"rtabmap": "not there"})
-    about = {"project": "/home/somebody", "script": "home_service.sh"}
-    options = parse(["/home/somebody", "--seed", "4"])
+    about = {"project": "/home/user", "script": "home_service.sh"}
+    options = parse(["/home/user", "--seed", "4"])
     assert cli.run_command(options, command, tmp_path, workspace, Display(), about) == code
     result = json.loads((tmp_path / "result.json").read_text())
     fastjsonschema.compile(json.loads(SCHEMA.read_text()))(result)
@@ -59,14 +59,14 @@ def test_the_result_of_a_project_follows_the_published_schema(is_interrupted, co
     assert result["complaints"] == ["window: [ERROR] [12.0]: no map"]
 
 
-def test_what_stands_behind_two_dashes_is_for_the_script():
+def test_arguments_after_two_dashes_are_for_the_script():
     options = parse(["project", "--rviz", "--", "--seed", "4"])
     assert options.script_arguments == ("--seed", "4")
     assert options.seed == 0
     assert options.effective_speed == 1.0
 
 
-@pytest.mark.parametrize(("more", "is_drawn_nowhere"), [([], True), (["--rviz"], False)])
-def test_windows_of_opencv_need_no_screen_unless_people_look_on(tmp_path, more, is_drawn_nowhere):
+@pytest.mark.parametrize(("more", "is_off_screen"), [([], True), (["--rviz"], False)])
+def test_opencv_windows_are_off_screen_without_rviz(tmp_path, more, is_off_screen):
     environment = cli.window_environment(parse([str(tmp_path), *more]), tmp_path / "log")
-    assert (environment.get("QT_QPA_PLATFORM") == "offscreen") == is_drawn_nowhere
+    assert (environment.get("QT_QPA_PLATFORM") == "offscreen") == is_off_screen

@@ -26,13 +26,13 @@ def test_the_authors_own_packages_are_built(tmp_path):
     assert (selection.replaced, selection.unbuilt, selection.absent) == ({}, {}, {})
 
 
-def test_compiled_packages_of_that_time_are_not_built(tmp_path):
+def test_vendored_compiled_packages_are_not_built(tmp_path):
     selection = choose(package(tmp_path, "kobuki_node", COMPILED.format("roscpp capabilities")))
     assert "do not build" in selection.unbuilt["kobuki_node"]
     assert selection.absent == {}
 
 
-def test_a_launch_package_wins_over_ours_and_programs_of_that_time_do_not(tmp_path):
+def test_launch_packages_of_the_project_take_precedence_but_vendored_programs_are_replaced(tmp_path):
     folders = package(tmp_path, "turtlebot_gazebo", "find_package(catkin REQUIRED)\n")
     folders.update(package(tmp_path, "gmapping", COMPILED.format("roscpp")))
     folders.update(package(tmp_path, "turtlebot_navigation", COMPILED.format("roscpp")))
@@ -46,17 +46,17 @@ def test_a_launch_package_wins_over_ours_and_programs_of_that_time_do_not(tmp_pa
     assert sorted(selection.unbuilt) == ["turtlebot_navigation"]
 
 
-def test_what_asks_for_a_package_that_is_nowhere_is_built_without_it(tmp_path):
+def test_a_dependency_that_is_not_installed_is_reported_with_its_users(tmp_path):
     folders = package(tmp_path, "low", COMPILED.format("roscpp capabilities"))
     folders.update(package(tmp_path, "high", COMPILED.format("low")))
     assert choose(folders).absent == {"capabilities": ["low"]}
 
 
-def test_a_commented_dependency_is_none(tmp_path):
+def test_commented_dependencies_are_ignored(tmp_path):
     assert choose(package(tmp_path, "a", COMPILED.format("roscpp\n# capabilities\n"))).absent == {}
 
 
-def test_a_robot_that_needs_parts_that_are_not_there_is_replaced_by_ours(tmp_path):
+def test_a_robot_description_with_missing_parts_is_replaced(tmp_path):
     folders = package(tmp_path, "turtlebot_description", "", robot="$(find kobuki_description)/urdf")
     ours = stand_in(tmp_path, "turtlebot_description", "robots")
     assert "kobuki_description" in choose(folders, ours).replaced["turtlebot_description"]

@@ -17,11 +17,11 @@ def install_rviz(prefix):
     return program
 
 
-def test_a_script_starts_no_second_master():
+def test_a_script_does_not_start_a_second_master():
     assert (STAND_INS / "bin/roscore").resolve() == STAND_INS / "bin/harmless"
 
 
-def test_the_real_rviz_finds_itself_behind_its_stand_in(tmp_path):
+def test_the_real_rviz_is_found_behind_its_stand_in(tmp_path):
     program = install_rviz(tmp_path)
     during_a_run = {
         "PATH": f"{STAND_INS}/bin:{tmp_path}/bin",

@@ -27,7 +27,7 @@ def copied(checkout, work):
     return placement, work / "tree" / placement.checkout
 
 
-def test_ours_is_there_where_git_left_a_submodule_empty(tmp_path):
+def test_an_empty_submodule_is_substituted(tmp_path):
     root = project(tmp_path / "repo")
     (root / "turtlebot_simulator").mkdir()
     placement, copy = copied(read_checkout(root), tmp_path / "work")
@@ -37,19 +37,19 @@ def test_ours_is_there_where_git_left_a_submodule_empty(tmp_path):
     assert list((root / "turtlebot_simulator").iterdir()) == []
 
 
-def test_ours_is_there_where_gitmodules_name_a_folder_that_is_not(tmp_path):
+def test_a_missing_folder_of_gitmodules_is_substituted(tmp_path):
     root = project(tmp_path / "repo", script="")
     (root / ".gitmodules").write_text('[submodule "a"]\n\tpath = turtlebot_gazebo\n\turl = x\n')
     _, copy = copied(read_checkout(root), tmp_path / "work")
     assert (copy / "turtlebot_gazebo/launch/turtlebot_world.launch").is_file()
 
 
-def test_ours_is_there_where_only_the_script_names_a_repository(tmp_path):
+def test_a_repository_that_only_the_script_references_is_substituted(tmp_path):
     _, copy = copied(read_checkout(project(tmp_path / "repo")), tmp_path / "work")
     assert (copy / DEMO).is_file()
 
 
-def test_what_the_project_has_itself_is_left_as_it_is(tmp_path):
+def test_packages_of_the_project_are_kept(tmp_path):
     root = project(tmp_path / "repo")
     (root / DEMO).parent.mkdir(parents=True)
     (root / DEMO).write_text("<launch/>")
@@ -57,7 +57,7 @@ def test_what_the_project_has_itself_is_left_as_it_is(tmp_path):
     assert (copy / DEMO).read_text() == "<launch/>"
 
 
-def test_folders_of_other_names_stay_empty(tmp_path):
+def test_empty_folders_with_other_names_stay_empty(tmp_path):
     root = project(tmp_path / "repo", script="")
     (root / "thirdparty").mkdir()
     assert not read_checkout(root).substitutes

@@ -47,16 +47,16 @@ def test_a_terminal_runs_what_its_window_would(terminal, arguments, commands):
         (["bash", "-c", "echo 'unbalanced"], "echo"),
     ],
 )
-def test_a_window_is_named_after_what_runs_in_it(command, title):
+def test_a_window_is_named_after_its_command(command, title):
     assert title_of(command) == title
 
 
-def test_only_a_server_of_windows_returns_at_once():
+def test_only_terminals_with_a_server_return_at_once():
     assert returns_at_once("gnome-terminal")
     assert not returns_at_once("xterm")
 
 
-def test_a_window_that_asks_gets_what_is_typed_and_waits_for_more(tmp_path, monkeypatch):
+def test_a_program_gets_its_input_and_waits_for_more(tmp_path, monkeypatch):
     script = tmp_path / "ask"
     script.write_text(f"#!{sys.executable}\nprint('yes or no?', input(), flush=True)\ninput()\n")
     script.chmod(0o755)

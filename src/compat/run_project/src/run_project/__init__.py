@@ -1,1 +1,1 @@
-"""Runs other people's home-service projects on this workspace, without changing them."""
+"""Run an existing home-service project, unmodified, on this workspace."""

@@ -1,4 +1,4 @@
-"""The way in: look at the project, build it, run it, say what it did."""
+"""Command line: read a checkout, build it, run its script, and write the verdict to result.json."""
 
 import fcntl
 import hashlib
@@ -41,26 +41,31 @@ from supervision.versions import versions
 
 FAILURE, BAD_INPUT = 1, 2
 WORK_FOLDER = PACKAGE_FOLDER.parents[2] / "build" / "projects"
-# Windows that programs open by themselves, as those of OpenCV, are drawn nowhere.
+# Windows that programs open directly, as with OpenCV, are rendered off screen.
 OFFSCREEN = {"QT_QPA_PLATFORM": "offscreen"}
 MAX_TEXT_BYTES = 3_000_000
 ROS_FOLDER = re.compile(r"/opt/ros/[a-z]+")
-# Of the simulator: what it does not leave behind at speed 0, and what projects count on as Gazebo does so:
-# many compare places in the map with /odom, which does not drift there.
+# Simulator parameters for every run: the nodes that speed 0 waits for, and odometry without drift, as in
+# Gazebo, because many projects compare positions in the map with /odom.
 SIMULATOR_PARAMETERS = {
     "wait_for": "amcl move_base",
     "odometry_rate": 200,
     "noise": "ideal",
     "range_noise": 0.01,
 }
-
-
-# How long the page is left open when the project is done.
+# Seconds that the cockpit stays open after the project has ended.
 VIEW_SECONDS = 8.0
 
 
 def main(arguments: Optional[List[str]] = None) -> int:
-    """Runs a project; returns the exit code: 0 success, 1 failure, 2 bad input, 130 interrupted."""
+    """Run a project.
+
+    Args:
+        arguments: Command line without the program's name; None for ``sys.argv``.
+
+    Returns:
+        Exit code: 0 success, 1 failure, 2 bad input, 130 interrupted.
+    """
     raise_when_interrupted()
     try:
         return run(parse(sys.argv[1:] if arguments is None else arguments))
@@ -76,9 +81,9 @@ def main(arguments: Optional[List[str]] = None) -> int:
 
 
 def run(options: ProjectOptions) -> int:
-    """Builds and runs the project that the options name."""
+    """Build and run the project; returns the exit code."""
     if options.rviz and not os.environ.get("DISPLAY"):
-        raise ProjectError("--rviz: there is no display (the variable DISPLAY is not set)")
+        raise ProjectError("--rviz needs a display, but the environment variable DISPLAY is not set")
     check_open_files()
     started = time.time()
     checkout = read_checkout(options.path)
@@ -107,7 +112,7 @@ def run(options: ProjectOptions) -> int:
 
 
 def _warn_about_missing_files(checkout: Checkout, display: Display) -> None:
-    """Says what is lacking that nobody can make up for."""
+    """Print warnings about files that are missing from the checkout."""
     for lacking, files in (
         ("not fetched, git lfs pull does that", checkout.lfs_pointers()),
         ("maps whose image is not in the checkout", checkout.maps_without_image()),
@@ -117,7 +122,7 @@ def _warn_about_missing_files(checkout: Checkout, display: Display) -> None:
 
 
 def _launch_plan(checkout: Checkout, options: ProjectOptions) -> Optional[ProjectLaunchPlan]:
-    """The lesson of the course that it is, if it has no script for it."""
+    """The launch plan of a course project without a script; None if a script is to be run."""
     named = options.script in [project.value for project in CourseProject]
     if not named and (
         options.script is not None or any(is_home_service_script(str(s)) for s in checkout.scripts())
@@ -125,14 +130,14 @@ def _launch_plan(checkout: Checkout, options: ProjectOptions) -> Optional[Projec
         return None
     plan = find_launch_plan(checkout.packages, read_path_texts(checkout), options.script)
     if named and plan is None:
-        raise ProjectError(f"{checkout.root}: no launch files of {options.script} in it")
+        raise ProjectError(f"{checkout.root}: no launch files for the course project {options.script}")
     return plan
 
 
 def _prepare_script(
     checkout: Checkout, options: ProjectOptions, plan: Optional[ProjectLaunchPlan], work: Path
 ) -> str:
-    """The script to run, relative to the checkout; that of a lesson is made in the folder ``work``."""
+    """Path of the script, relative to the checkout; for a course project one is generated in ``work``."""
     if plan is None:
         return str(choose_script(checkout, options.script))
     made = work / f"{plan.project.value}.sh"
@@ -148,9 +153,20 @@ def _script_name(script: str, plan: Optional[ProjectLaunchPlan]) -> str:
 def find_placement(
     checkout: Checkout, script: str, texts: Dict[str, str], work: Path, arguments: Sequence[str]
 ) -> Placement:
-    """Where the checkout has to lie by what its files name, and by what its script tells other programs.
+    """Find the placement for which the paths in the checkout's files exist.
 
-    Adds the latter to the script's text.
+    A dry run of the script reveals the paths that it composes from variables; they are appended to its text
+    in ``texts``.
+
+    Args:
+        checkout: The project.
+        script: The script to run, relative to the checkout.
+        texts: Contents of files by path, relative to the checkout; the script's entry is extended.
+        work: Work folder of the project.
+        arguments: Command line arguments of the script.
+
+    Returns:
+        Where the checkout is copied to, where the script starts, and which absolute paths are mounted.
     """
     home, user = str(Path.home()), os.environ.get("USER", "root")
     placement = best_placement(checkout, script, texts, home, user)
@@ -161,7 +177,7 @@ def find_placement(
 
 
 def read_path_texts(checkout: Checkout, script: str = "") -> Dict[str, str]:
-    """The contents of the files that may name paths."""
+    """Read the files that may contain paths: path relative to the checkout -> contents."""
     texts = {}
     for file in {*checkout.files, *([script] if script else [])}:
         path = checkout.root / file
@@ -197,13 +213,13 @@ def _project_command(
 
 
 def window_environment(options: ProjectOptions, logs: Path) -> Dict[str, str]:
-    """The environment of what runs in windows, and of what stands in for these."""
+    """Environment variables for programs in terminal windows and for the stand-ins."""
     screen = {RVIZ_VARIABLE: "1"} if options.rviz else OFFSCREEN
     return {LOG_FOLDER_VARIABLE: str(logs), INPUT_VARIABLE: "\n".join(options.type), **screen}
 
 
 def _ros_distribution_substitute(folder: Path, workspace: Workspace) -> Path:
-    """What is seen as /opt/ros/<distribution>: setting it up sets up the project's workspace."""
+    """Create the folder mounted as /opt/ros/<distribution>: sourcing it sources the project's workspace."""
     folder.mkdir(exist_ok=True)
     for shell in ("bash", "sh", "zsh"):
         (folder / f"setup.{shell}").write_text(f'. "{workspace.folder}/devel/setup.{shell}"\n')
@@ -219,7 +235,20 @@ def run_command(
     about: Dict[str, str],
     plan: Optional[ProjectLaunchPlan] = None,
 ) -> int:
-    """Runs the script, judges what it did, and writes that down; returns the exit code."""
+    """Run the script, judge the run and write result.json.
+
+    Args:
+        options: Command line options.
+        command: The script with its folder and environment.
+        folder: Run folder.
+        workspace: The project's built workspace.
+        display: Console output.
+        about: Entries of result.json that identify the run; ``script`` decides whether goals are required.
+        plan: The launch plan if this is a course project without a script.
+
+    Returns:
+        Exit code: 0 success, 1 failure, 130 interrupted.
+    """
     started = time.monotonic()
     parameters = _parameters(options, plan)
     run = ProjectRun(command, folder / "log", parameters, display, PROCEDURES[plan.project] if plan else None)
@@ -233,7 +262,7 @@ def run_command(
         failure, is_interrupted = str(error), True
     record = run.observer.record
     verdict = _verdict_of(run, failure, is_home_service_script(about["script"]), options)
-    complaints = find_log_errors(folder / "log")
+    errors = find_log_errors(folder / "log")
     found = {
         "success": verdict.success,
         "reason": verdict.reason,
@@ -243,11 +272,11 @@ def run_command(
         "speed": parameters["/gazebo/speed"],
         "seed": options.seed,
         "left_out": workspace.missing,
-        "complaints": complaints,
+        "complaints": errors,
     }
     always = {"command": "run_project", "versions": versions(), "missing": []}
     path = write_result(folder, {**always, **about, **found})
-    _report(display, verdict, record, complaints)
+    _report(display, verdict, record, errors)
     display.print(f"result in {path}, a log of each window in {folder / 'log'}")
     return INTERRUPTED if is_interrupted else 0 if verdict.success else FAILURE
 
@@ -263,7 +292,7 @@ def _verdict_of(
 def _watch_run(
     run: ProjectRun, command: ProjectCommand, options: ProjectOptions, folder: Path, display: Display
 ) -> Optional[str]:
-    """Why the project cannot go on, or None; with its page in the browser beside, if that is wanted."""
+    """Watch the run, with the cockpit if requested; returns why the run was cut short, or None."""
     if not options.shows_cockpit:
         return run.watch(options.timeout)
     log = folder / "log" / "cockpit.log"
@@ -271,7 +300,7 @@ def _watch_run(
     try:
         display.print(f"cockpit: {cockpit.url}")
         failure = run.watch(options.timeout)
-        display.print(f"the page stays open for {VIEW_SECONDS:g} s")
+        display.print(f"the cockpit stays open for {VIEW_SECONDS:g} s")
         time.sleep(VIEW_SECONDS)
         return failure
     finally:
@@ -279,10 +308,10 @@ def _watch_run(
 
 
 def _parameters(options: ProjectOptions, plan: Optional[ProjectLaunchPlan]) -> Dict[str, object]:
-    """What the simulator is told; every other parameter is the project's own business.
+    """ROS parameters of the simulator; the project sets all others.
 
-    A person who drives the robot has to keep up, so a lesson runs in real time if nothing else is wanted;
-    nobody waits for the nodes of navigation where there is none.
+    The scripted user needs real time, so this is the default for course projects. Without navigation the
+    simulator waits for none of its nodes.
     """
     speed = options.effective_speed if plan is None or options.speed is not None else 1.0
     navigates = plan is None or plan.project is CourseProject.LOCALIZE
@@ -295,18 +324,16 @@ def _parameters(options: ProjectOptions, plan: Optional[ProjectLaunchPlan]) -> D
     }
 
 
-def _report(
-    display: Display, verdict: ProjectVerdict, record: ProjectRunRecord, complaints: List[str]
-) -> None:
+def _report(display: Display, verdict: ProjectVerdict, record: ProjectRunRecord, errors: List[str]) -> None:
     if not verdict.success:
-        for complaint in complaints:
-            display.print(f"  | {complaint}")
+        for error in errors:
+            display.print(f"  | {error}")
     display.print(f"drove {record.distance_driven:.1f} m, {len(record.collisions)} collisions")
     display.print(f"{'SUCCESS' if verdict.success else 'FAILURE'}: {verdict.reason}")
 
 
 class _WorkFolder:
-    """The work folder of a checkout, for one run at a time."""
+    """Context that locks the work folder of a checkout, so that only one run uses it."""
 
     def __init__(self, root: Path):
         name = re.sub(r"[^\w-]", "_", root.name)
@@ -318,9 +345,7 @@ class _WorkFolder:
         try:
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            raise ProjectError(
-                f"another run of this project is under way (it works in {self.path})"
-            ) from None
+            raise ProjectError(f"another run of this project is active; it has locked {self.path}") from None
         return self
 
     def __exit__(self, *_):

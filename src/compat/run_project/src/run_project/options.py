@@ -1,4 +1,4 @@
-"""The command line of run_project."""
+"""Command line options of run_project."""
 
 import argparse
 import math
@@ -29,7 +29,9 @@ def _goal_statuses(text: str) -> Tuple[str, ...]:
     endings = tuple(text.replace(",", " ").split())
     wrong = [ending for ending in endings if ending not in FINAL_STATUSES]
     if wrong or not endings:
-        raise argparse.ArgumentTypeError(f"of {', '.join(sorted(FINAL_STATUSES))}, one a goal, got {text!r}")
+        raise argparse.ArgumentTypeError(
+            f"must be a list of {', '.join(sorted(FINAL_STATUSES))}, one for each goal, got {text!r}"
+        )
     return endings
 
 
@@ -41,44 +43,48 @@ def _window_input(text: str) -> str:
 
 @dataclass(frozen=True)
 class ProjectOptions:
-    """Runs somebody's home-service project, unmodified and headless.
+    """Run an existing home-service project, unmodified and headless.
 
-    ``script_arguments``: what stands after ``--``.
+    Attributes:
+        script_arguments: Arguments after ``--``, passed to the script.
     """
 
     path: Path = argument("the project's checkout", metavar="PATH", type=Path)
     script: Optional[str] = argument(
-        "the script to run, if it is not home_service.sh, or go_chase_it, where_am_i, map_my_world",
+        "script to run (default: home_service.sh), or go_chase_it, where_am_i, map_my_world",
         default=None,
         metavar="SCRIPT",
         nargs="?",
     )
     speed: Optional[float] = option(
-        None, "1 real time, N times that, 0 as fast as the nodes keep up", type=_speed
+        None, "1: real time, N: N times real time, 0: as fast as the nodes keep up", type=_speed
     )
-    seed: int = option(0, "of every noise", type=int)
-    timeout: float = option(600.0, "seconds of wall time", type=_seconds)
+    seed: int = option(0, "seed of all noise", type=int)
+    timeout: float = option(600.0, "time limit in seconds of wall time", type=_seconds)
     expect: Optional[Tuple[str, ...]] = option(
-        None, "how its goals are to end, one after the other: aborted,succeeded", type=_goal_statuses
+        None, "expected final status of each goal, as aborted,succeeded", type=_goal_statuses
     )
     type: Tuple[str, ...] = option(
         (),
-        "what to type into windows that ask, as add_markers=0",
+        "input for programs that read from their terminal, as add_markers=0",
         type=_window_input,
         nargs="+",
         metavar="WINDOW=TEXT",
     )
-    rviz: bool = option(False, "show it in rviz")
-    web: bool = option(False, "show it in the browser: prints the page's URL")
-    web_port: Optional[str] = option(None, "where that page is served", metavar="[ADDRESS:]PORT")
+    rviz: bool = option(False, "show the run in rviz")
+    web: bool = option(False, "show the run in the browser: prints the URL of the cockpit")
+    web_port: Optional[str] = option(None, "address of the cockpit", metavar="[ADDRESS:]PORT")
     record: bool = option(False, "record a bag into the run folder")
-    build_only: bool = option(False, "end after the build")
-    output: Path = option(Path("runs"), "where the run folder is made", type=Path)
+    build_only: bool = option(False, "build only, do not run")
+    output: Path = option(Path("runs"), "folder in which the run folder is created", type=Path)
     script_arguments: Tuple[str, ...] = ()
 
     @property
     def effective_speed(self) -> float:
-        """Simulated seconds per second; 0: as fast as the nodes keep up. Real time where people look on."""
+        """Simulated seconds per second of wall time; 0: as fast as the nodes keep up.
+
+        Defaults to real time with ``--rviz`` or ``--web``.
+        """
         return float(self.rviz or self.shows_cockpit) if self.speed is None else self.speed
 
     @property
@@ -87,7 +93,7 @@ class ProjectOptions:
 
 
 def parse(words: Sequence[str]) -> ProjectOptions:
-    """Ends the process on --help and on nonsense."""
+    """Parse the command line; --help and invalid options end the process."""
     end = words.index("--") if "--" in words else len(words)
     options = command_line.parse(ProjectOptions, words[:end], "run_project.sh", allow_abbreviations=False)
     return replace(options, script_arguments=tuple(words[end + 1 :]))

@@ -1,1 +1,1 @@
-"""Reads a project as it was checked out: what kind of folder it is, and which paths it counts on."""
+"""Analysis of a checkout: its layout, its missing packages, and the paths that its files expect."""

@@ -1,6 +1,6 @@
-"""What a script tells the programs it calls: learned by running it once where all of them only listen.
+"""Dry run of a shell script: bash runs it with stubs that record the arguments of every call.
 
-So paths are known that a script puts together from its variables, whatever the shell can do.
+This reveals the paths that a script composes from variables, without reimplementing the shell.
 """
 
 import contextlib
@@ -12,31 +12,40 @@ import tempfile
 from pathlib import Path
 from typing import Dict, List, Sequence
 
-# Programs that scripts put paths together with, and that change nothing.
+# Programs that scripts use to compose paths and that change nothing: they are executed.
 SIDE_EFFECT_FREE_PROGRAMS = (
     "awk basename bash cat cut date dirname env expr find grep head hostname id ls nproc readlink realpath "
     "sed seq sh sort tail tr uname wc which whoami"
 ).split()
-# Seconds: some scripts loop for ever.
+# Time limit, wall time: some scripts loop forever.
 DRY_RUN_SECONDS = 5.0
-# Read by bash before the script: what it calls is written down, what it goes to or reads need not be there.
+# Sourced by bash before the script: commands are only recorded; cd and source tolerate missing files.
 RECORDING_PRELUDE = """
-_told() { printf '%s\\n' "$@"; env; } >> "$RUN_PROJECT_TOLD"
-command_not_found_handle() { _told "${@:2}"; }
-cd() { _told "${@: -1}"; builtin cd "$@" 2> /dev/null || true; }
-source() { _told "$1"; case "$1" in *setup.*) ;; *) [ ! -f "$1" ] || builtin source "$@" ;; esac; }
+_record() { printf '%s\\n' "$@"; env; } >> "$RUN_PROJECT_RECORDING"
+command_not_found_handle() { _record "${@:2}"; }
+cd() { _record "${@: -1}"; builtin cd "$@" 2> /dev/null || true; }
+source() { _record "$1"; case "$1" in *setup.*) ;; *) [ ! -f "$1" ] || builtin source "$@" ;; esac; }
 .() { source "$@"; }
 for _name in kill wait read; do eval "$_name() { :; }"; done
 """
 
 
 def recorded_calls(script: Path, folder: Path, arguments: Sequence[str]) -> str:
-    """What the shell script says when it is started in ``folder``: words and variables, one a line."""
+    """Record the calls of a shell script.
+
+    Args:
+        script: The script; anything but a shell script is not run.
+        folder: Working folder of the script.
+        arguments: Its command line arguments.
+
+    Returns:
+        Arguments of all calls and the environment variables at each, one a line.
+    """
     if not _is_shell(script):
         return ""
-    with tempfile.TemporaryDirectory(prefix="listening-") as made:
+    with tempfile.TemporaryDirectory(prefix="dry-run-") as made:
         here = Path(made)
-        (here / "listening.bash").write_text(RECORDING_PRELUDE)
+        (here / "recording.bash").write_text(RECORDING_PRELUDE)
         programs = here / "bin"
         programs.mkdir()
         for name in SIDE_EFFECT_FREE_PROGRAMS:
@@ -44,14 +53,14 @@ def recorded_calls(script: Path, folder: Path, arguments: Sequence[str]) -> str:
             if found:
                 (programs / name).symlink_to(found)
         variables = {
-            "BASH_ENV": str(here / "listening.bash"),
-            "RUN_PROJECT_TOLD": str(here / "told"),
+            "BASH_ENV": str(here / "recording.bash"),
+            "RUN_PROJECT_RECORDING": str(here / "recording"),
             "PATH": str(programs),
             **{name: os.environ[name] for name in ("HOME", "USER") if name in os.environ},
         }
         _run([str(shutil.which("bash")), str(script), *arguments], folder, variables)
-        recorded = here / "told"
-        lines = recorded.read_text(errors="replace").splitlines() if recorded.exists() else []
+        recording = here / "recording"
+        lines = recording.read_text(errors="replace").splitlines() if recording.exists() else []
         return "\n".join(line for line in lines if made not in line)
 
 

@@ -1,4 +1,4 @@
-"""Which kind of checkout a project is: a workspace, the content of its src, or one package."""
+"""Layout of a checkout: a workspace, the content of its src folder, or one package."""
 
 import enum
 import os
@@ -12,7 +12,7 @@ from planar import PlanarError
 from run_project.checkout.substitutes import find_substitutes, substitute_files
 from run_project.stand_ins import PACKAGE_FOLDER
 
-# What a build or a version control leaves in a checkout; never read, never copied.
+# Folders of builds and version control: neither read nor copied.
 BUILD_AND_VCS_FOLDERS = frozenset((".git", ".hg", ".svn", "build", "devel", "install", "logs"))
 SCRIPTS = (".sh", ".bash")
 HOME_SERVICE = "home_service"
@@ -26,7 +26,7 @@ class ProjectError(PlanarError):
 
 
 class CheckoutKind(enum.Enum):
-    """What the top folder of a checkout is."""
+    """What the top folder of a checkout contains."""
 
     WORKSPACE = "a workspace"
     SOURCES = "the content of src"
@@ -35,11 +35,15 @@ class CheckoutKind(enum.Enum):
 
 @dataclass(frozen=True)
 class Checkout:
-    """A project as it lies on the disk. All other paths are relative to ``root``.
+    """Files and packages of a project. Paths are relative to ``root`` unless stated otherwise.
 
-    ``workspace`` is the folder that holds ``src``; None unless the kind is WORKSPACE.
-    ``packages`` maps names to folders. ``lent``: folders of ours that take the place of missing ones;
-    their files are among ``files``.
+    Attributes:
+        root: Absolute path of the checkout.
+        kind: Layout of the checkout.
+        workspace: Folder that contains ``src``; None unless the kind is WORKSPACE.
+        packages: Package name -> folder.
+        files: All files, including those of ``substitutes``.
+        substitutes: Missing package folder -> absolute folder of this workspace's package that replaces it.
     """
 
     root: Path
@@ -54,12 +58,12 @@ class Checkout:
         return [Path(file) for file in self.files if file.endswith(SCRIPTS)]
 
     def programs(self) -> List[Path]:
-        """All shell scripts, and what else names its interpreter."""
+        """All shell scripts, and all other files that start with ``#!``."""
         others = (file for file in self.files if Path(file).suffix in ("", ".py"))
         return self.scripts() + [Path(file) for file in others if _starts_with(self.root / file, b"#!")]
 
     def lfs_pointers(self) -> List[str]:
-        """Files that were not fetched: what Git LFS puts in their place says where they are."""
+        """Files that Git LFS has not fetched: the checkout contains only their pointers."""
         return [file for file in self.files if _starts_with(self.root / file, LFS_POINTER)]
 
     def maps_without_image(self) -> List[str]:
@@ -77,24 +81,35 @@ class Checkout:
         return found
 
     def model_folders(self) -> List[Path]:
-        """All folders in which Gazebo's models lie, those that worlds name as ``model://name``."""
+        """Folders that contain Gazebo models, as referenced by ``model://NAME`` in worlds."""
         models = (Path(file).parent for file in self.files if Path(file).name == "model.config")
         return sorted({model.parent for model in models})
 
 
 def read_checkout(root: Path) -> Checkout:
-    """Looks at the folder ``root``. Raises ProjectError if there is no package in it."""
+    """Read the layout of a checkout.
+
+    Args:
+        root: Folder of the checkout.
+
+    Raises:
+        ProjectError: The folder does not exist or contains no package.
+    """
     root = root.resolve()
     if not root.is_dir():
-        raise ProjectError(f"{root}: no such folder")
+        raise ProjectError(f"{root}: no such folder; expected the checkout of a project")
     own = tuple(_files(root))
     scripts = ((root / file).read_text(errors="replace") for file in own if file.endswith(SCRIPTS))
     substitutes = find_substitutes(root, scripts, PACKAGE_FOLDER.parent)
     files = (*own, *substitute_files(substitutes))
     packages = _packages(root, own)
     if not packages:
-        hint = " (it has git submodules: have they been fetched?)" if ".gitmodules" in files else ""
-        raise ProjectError(f"{root}: no package.xml in it or below{hint}")
+        hint = (
+            " (its git submodules may be missing: git submodule update --init)"
+            if ".gitmodules" in files
+            else ""
+        )
+        raise ProjectError(f"{root}: no package.xml in this folder or below{hint}")
     workspace = None
     if Path() in packages.values():
         kind = CheckoutKind.PACKAGE
@@ -105,9 +120,17 @@ def read_checkout(root: Path) -> Checkout:
 
 
 def choose_script(checkout: Checkout, wanted: Optional[str]) -> Path:
-    """The script to run: the one ``wanted``, by path or by name, or home_service.sh.
+    """Select the script to run.
 
-    Raises ProjectError that names the scripts there are.
+    Args:
+        checkout: The project.
+        wanted: Path relative to the checkout, or name with or without ``.sh``; None for home_service.sh.
+
+    Returns:
+        Path relative to the checkout.
+
+    Raises:
+        ProjectError: There is no such script; the text lists the scripts of the checkout.
     """
     scripts = checkout.scripts()
     if wanted is None:
@@ -122,13 +145,13 @@ def choose_script(checkout: Checkout, wanted: Optional[str]) -> Path:
         return min(chosen, key=lambda script: (len(script.parts), str(script)))
     names = ", ".join(str(script) for script in scripts) or "none"
     raise ProjectError(
-        f"{checkout.root}: no script {wanted or HOME_SERVICE + '.sh'} in it; "
-        f"name another of its scripts: {names}"
+        f"{checkout.root}: no script {wanted or HOME_SERVICE + '.sh'} in this checkout; "
+        f"name one of its scripts: {names}"
     )
 
 
 def is_home_service_script(script: str) -> bool:
-    """Whether a script drives the robot, by its name; others may just show a marker."""
+    """Whether a script, by its name, drives the robot; other scripts may only show a marker."""
     return _letters_only(HOME_SERVICE) in _letters_only(Path(script).stem)
 
 
@@ -168,7 +191,7 @@ def _packages(root: Path, files) -> Dict[str, Path]:
 
 
 def _workspace(packages: Dict[str, Path]) -> Optional[Path]:
-    """The folder above the ``src`` that holds most packages."""
+    """The parent of the ``src`` folder that contains most packages."""
     above = [
         parent.parent for folder in packages.values() for parent in folder.parents if parent.name == "src"
     ]

@@ -1,8 +1,8 @@
-"""Where a checkout has to lie, and where its script has to start, for the paths it names to be right.
+"""Placement of a checkout: its folder in the workspace, the script's start folder, and the paths to mount.
 
-Authors run their scripts from the workspace, from the script's folder or from the repository, cloned as the
-``src`` of a workspace or into it, in a home that is not ours. Each possibility is tried on paper; the one
-under which most of the named files exist is taken.
+Authors start scripts from the workspace, from the script's folder or from the repository, which is cloned as
+the ``src`` of a workspace or into it, below another home folder. All combinations are compared; the one with
+most of the referenced files is selected.
 """
 
 import os
@@ -13,16 +13,16 @@ from typing import Dict, FrozenSet, Iterable, Iterator, List, Mapping, Optional,
 
 from run_project.checkout.layout import Checkout, CheckoutKind
 
-# Where the system's own files are, and what is rather the tail of a path: nothing is put there.
+# Top folders of the system, and names that rather are the tail of a path: nothing is mounted there.
 SYSTEM_FOLDERS = frozenset("bin boot dev etc lib lib64 opt proc run sbin src sys usr var".split())
 BUILD_PRODUCTS = ("devel/setup.bash", "devel/setup.sh", "devel/setup.zsh", "build", "install/setup.bash")
 READ_SUFFIXES = frozenset(
     ".bash .cpp .h .launch .py .rviz .sdf .sh .urdf .world .xacro .xml .yaml .yml".split()
 )
 
-# Stands for the folder in which the workspace is made, while paths are tried.
+# Placeholder for the folder in which the workspace is created.
 ROOT = "/@"
-# Deeper in it than any script climbs.
+# A folder deeper below ROOT than any number of ``..`` in a script.
 DEEP_FOLDER = ROOT + "/_" * 20
 
 _NAME = r"[\w@%+.-]+"
@@ -36,17 +36,23 @@ _CD_PWD = re.compile(
 _WORKING_FOLDER = re.compile(r"\$\(\s*pwd\s*\)|`\s*pwd\s*`|\$PWD\b|\$\{PWD\}")
 _ROSPACK = re.compile(r"(?:\$\(\s*rospack\s+find\s+([\w-]+)\s*\)|`\s*rospack\s+find\s+([\w-]+)\s*`)")
 _CD = re.compile(r"(?:^|[;&(\"'\s])cd\s+[\"']?([^\s;&\"')]+)")
-# A quoted piece that goes on outside of its quotes: "$PWD"/src.
+# A quoted part of a path that continues after the quotes: "$PWD"/src.
 _QUOTED_PIECE = re.compile(r"([\"'])([^\"'\s]*)\1(?=/)")
 _PATH = re.compile(r"[^\s\"'`;&|()<>=,]*/[^\s\"'`;&|()<>=,]*|(?<=:=)[^\s\"';&]+")
 
 
 @dataclass(frozen=True)
 class Placement:
-    """All paths are relative to the folder in which the workspace is made.
+    """Where a checkout is copied and started.
 
-    ``mounts``: absolute folders and files that the project's files name, and what must be seen there.
-    ``links``: files that they name and that lie elsewhere in the checkout, and where that is.
+    Paths are relative to the folder in which the workspace is created.
+
+    Attributes:
+        checkout: Folder of the checkout.
+        workspace: Folder of the catkin workspace.
+        start: Folder in which the script is started.
+        mounts: Absolute path referenced by the project -> folder or file to be mounted there.
+        links: Referenced file that does not exist -> file of the same name elsewhere in the checkout.
     """
 
     checkout: Path
@@ -59,7 +65,15 @@ class Placement:
 def best_placement(
     checkout: Checkout, script: str, texts: Mapping[str, str], home: str, user: str
 ) -> Placement:
-    """The best placement for running ``script``; ``texts`` are the contents of the files by relative path."""
+    """Select the placement under which most of the referenced files exist.
+
+    Args:
+        checkout: The project.
+        script: The script to run, relative to the checkout.
+        texts: Contents of files by path relative to the checkout, including the script.
+        home: Home folder that ``~`` and ``$HOME`` stand for.
+        user: User name that ``$USER`` stands for.
+    """
     named = _external_paths(checkout, script, texts, home, user)
     files = _with_parent_folders(checkout.files)
     prefixes = sorted(
@@ -88,7 +102,7 @@ def best_placement(
 def _external_paths(
     checkout: Checkout, script: str, texts: Mapping[str, str], home: str, user: str
 ) -> List[str]:
-    """Absolute paths that any file names, or the script by going to a folder and naming a file from there."""
+    """Absolute paths outside of the checkout in any file, and those that the script reaches with ``cd``."""
     packages = {name: _in_root(folder) for name, folder in checkout.packages.items()}
     text = expand_home(texts[script], home, user)
     gone_to = referenced_paths(text, DEEP_FOLDER, f"{DEEP_FOLDER}/{Path(script).parent}", packages)
@@ -99,7 +113,7 @@ def _external_paths(
 def _add_moved_files(
     checkout: Checkout, texts: Mapping[str, str], placement: Placement, home: str, user: str
 ) -> None:
-    """Adds files named where they once were: they lie beside those that name them, or once elsewhere."""
+    """Add referenced files that were moved: beside the referencing file, or elsewhere if unique."""
     there = _existing_paths(checkout, placement.checkout, placement.workspace)
     folders = dict(placement.mounts)
     for file, text in sorted(texts.items()):
@@ -117,14 +131,14 @@ def _add_moved_files(
 
 
 def absolute_paths(text: str, home: str, user: str) -> Set[str]:
-    """Absolute paths of files that may be the project's: not the system's, not the names of topics."""
+    """Absolute paths in a text that may belong to the project, without system paths and topic names."""
     at = expand_home(text.replace("file://", ""), home, user)
     paths = (match.group(1).rstrip(".") for match in _ABSOLUTE.finditer(at))
     return {os.path.normpath(path) for path in paths if _may_be_project_path(path)}
 
 
 def expand_home(text: str, home: str, user: str) -> str:
-    """The text with the home folder and the user's name put in where a shell would."""
+    """Expand ``~``, ``$HOME`` and ``$USER`` as a shell does."""
     text = _HOME.sub(lambda _: home, text)
     return text.replace("${USER}", user).replace("$USER", user)
 
@@ -136,10 +150,18 @@ def _may_be_project_path(path: str) -> bool:
 
 
 def referenced_paths(text: str, start: str, script_folder: str, packages: Mapping[str, str]) -> Iterator[str]:
-    """The paths that a shell script names or goes to, resolved as if it was started in the folder ``start``.
+    """Paths that a shell script references or changes to.
 
-    Not a shell: knows ``cd``, assignments, ``$(pwd)``, the script's own folder and ``rospack find``.
-    All folders, also those of the packages, are given absolute.
+    Interprets ``cd``, assignments, ``$(pwd)``, the script's folder and ``rospack find``; not a full shell.
+
+    Args:
+        text: The script.
+        start: Absolute folder in which it is started.
+        script_folder: Absolute folder of the script.
+        packages: Package name -> absolute folder.
+
+    Yields:
+        Absolute, normalized paths.
     """
     text = _QUOTED_PIECE.sub(r"\2", _substituted(_SCRIPT_FOLDER, script_folder, text))
     text = _CD_PWD.sub(lambda match: _resolved(start, match.group(1)), text)
@@ -158,13 +180,13 @@ def referenced_paths(text: str, start: str, script_folder: str, packages: Mappin
 
 
 class ShellVariables:
-    """The variables that a script has assigned so far."""
+    """Variables assigned in the lines of a shell script read so far."""
 
     def __init__(self):
         self._values: Dict[str, str] = {}
 
     def substitute(self, line: str) -> str:
-        """The line with the variables replaced; what it assigns itself is known from then on."""
+        """Replace the variables in a line, then store the variable that it assigns."""
         for name, value in self._values.items():
             line = _substituted(re.compile(rf"\$(?:{name}\b|\{{{name}\}})"), value, line)
         assigned = _ASSIGNMENT.match(line)
@@ -174,7 +196,7 @@ class ShellVariables:
 
 
 def resolve_mount(path: str, mounts: Mapping[str, Path]) -> Optional[Path]:
-    """Where an absolute path is found once the mounts are made; None if under none of them."""
+    """Translate an absolute path into the folder mounted there; None if it is below no mount."""
     for target, source in mounts.items():
         if path == target or path.startswith(target + "/"):
             return source / path[len(target) :].lstrip("/")
@@ -201,7 +223,7 @@ def _paths_in(text: str, folder: str) -> Iterator[str]:
 
 
 def _checkout_prefix(path: str, files: FrozenSet[str]) -> Optional[Tuple[str, bool]]:
-    """The folder that stands for the checkout (True) or its workspace (False), by the path's longest tail."""
+    """The part of an absolute path that denotes the checkout (True) or its workspace (False)."""
     parts = path.split("/")
     for at in range(2, len(parts)):
         if "/".join(parts[at:]) in files:
@@ -213,7 +235,7 @@ def _checkout_prefix(path: str, files: FrozenSet[str]) -> Optional[Tuple[str, bo
 
 
 def _candidate_positions(checkout: Checkout, prefixes: Iterable[str]) -> List[Tuple[Path, Path]]:
-    """Where checkout and workspace may lie: pairs relative to the folder in which they are made."""
+    """Candidate folders of checkout and workspace, relative to the folder in which they are created."""
     if checkout.kind is CheckoutKind.WORKSPACE:
         assert checkout.workspace is not None
         return [(Path(), Path(checkout.workspace))]
@@ -233,7 +255,7 @@ def _mounts(prefixes: List[Tuple[str, bool]], at: Path, workspace: Path) -> Iter
 
 
 def _candidate_start_folders(at: Path, workspace: Path, script_folder: Path) -> List[Path]:
-    """Where people stand when they start a script; the likeliest first."""
+    """Folders from which authors start scripts, the most likely first."""
     return list(
         dict.fromkeys([workspace, at / script_folder, at, workspace / "src", at / script_folder.parent])
     )

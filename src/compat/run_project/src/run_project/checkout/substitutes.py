@@ -1,11 +1,11 @@
-"""Folders that git left empty: where a repository or a package was that ours stand in for, ours is lent."""
+"""Substitutes for missing submodules: packages of this workspace, linked into the copy of the checkout."""
 
 import os
 import re
 from pathlib import Path
 from typing import Dict, Iterable, Mapping, Tuple
 
-# The packages of the repositories that projects have as submodules.
+# Repositories that projects include as submodules, and the packages of this workspace that replace them.
 REPOSITORIES: Mapping[str, Tuple[str, ...]] = {
     "turtlebot": ("turtlebot_bringup", "turtlebot_description", "turtlebot_teleop"),
     "turtlebot_simulator": ("turtlebot_gazebo",),
@@ -18,14 +18,22 @@ REPOSITORIES: Mapping[str, Tuple[str, ...]] = {
 IGNORED = "CATKIN_IGNORE"
 
 
-def find_substitutes(root: Path, named: Iterable[str], stand_ins: Path) -> Dict[Path, Path]:
-    """Which of our package folders to lend to the checkout at ``root``, by the folders to be seen as them.
+def find_substitutes(root: Path, script_texts: Iterable[str], stand_ins: Path) -> Dict[Path, Path]:
+    """Find the packages that replace missing folders of a checkout.
 
-    Those are relative: what is empty in the checkout, what its .gitmodules name, and, of what is ``named`` as
-    ``repository/package`` in the texts of its scripts, what is not there, beside the other packages.
+    Missing are empty folders, submodules of .gitmodules that do not exist, and repositories that a script
+    references as ``repository/package/`` and that do not exist; these belong beside the other packages.
+
+    Args:
+        root: Folder of the checkout.
+        script_texts: Texts of its scripts.
+        stand_ins: Folder with the packages of this workspace that replace official ones.
+
+    Returns:
+        Folder relative to the checkout -> absolute folder of the replacing package.
     """
     substitutes: Dict[Path, Path] = {}
-    for folder in sorted({*_empty(root), *_submodules(root), *_named(root, named)}):
+    for folder in sorted({*_empty(root), *_submodules(root), *_referenced(root, script_texts)}):
         packages = REPOSITORIES.get(folder.name)
         if packages is None and (stand_ins / folder.name / "package.xml").is_file():
             substitutes[folder] = stand_ins / folder.name
@@ -35,7 +43,10 @@ def find_substitutes(root: Path, named: Iterable[str], stand_ins: Path) -> Dict[
 
 
 def link_substitutes(substitutes: Mapping[Path, Path], checkout: Path) -> None:
-    """Makes the folders in the copy ``checkout``, with links to what is in ours; none is built again."""
+    """Create the missing folders in a copy of the checkout, with links to the substitutes' files.
+
+    CATKIN_IGNORE keeps them from being built a second time.
+    """
     for folder, package in substitutes.items():
         target = checkout / folder
         target.mkdir(parents=True, exist_ok=True)
@@ -45,7 +56,7 @@ def link_substitutes(substitutes: Mapping[Path, Path], checkout: Path) -> None:
 
 
 def substitute_files(substitutes: Mapping[Path, Path]) -> Iterable[str]:
-    """All files that the lent folders have, relative to the checkout."""
+    """All files of the substitutes, relative to the checkout."""
     for folder, package in substitutes.items():
         for file in package.rglob("*"):
             if file.is_file():
@@ -68,7 +79,7 @@ def _submodules(root: Path) -> Iterable[Path]:
                 yield Path(path)
 
 
-def _named(root: Path, texts: Iterable[str]) -> Iterable[Path]:
+def _referenced(root: Path, texts: Iterable[str]) -> Iterable[Path]:
     text = "\n".join(texts)
     for repository, packages in REPOSITORIES.items():
         is_named = any(f"{repository}/{package}/" in text for package in packages)
@@ -77,6 +88,6 @@ def _named(root: Path, texts: Iterable[str]) -> Iterable[Path]:
 
 
 def _beside_packages(root: Path) -> Path:
-    """Relative to ``root``: where most of its packages lie."""
+    """The folder, relative to ``root``, that contains most packages."""
     above = [file.parent.parent for file in root.rglob("package.xml") if file.parent != root]
     return max(sorted(set(above)), key=above.count, default=root).relative_to(root)

@@ -1,1 +1,1 @@
-"""The projects of the course before the home-service robot: what they are, and how they went."""
+"""Course projects without a script: how they are launched, and how they are checked."""

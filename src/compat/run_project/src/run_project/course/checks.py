@@ -1,4 +1,4 @@
-"""How a lesson went: what was tried with the robot, one after the other, and whether it did that."""
+"""Results of the checks of a course project."""
 
 from dataclasses import dataclass, field
 from typing import List, Optional
@@ -8,7 +8,7 @@ from run_project.judging.verdict import ProjectVerdict
 
 @dataclass(frozen=True)
 class Check:
-    """One thing tried, in words, with what came of it."""
+    """Result of one check, with a description."""
 
     passed: bool
     description: str
@@ -16,19 +16,25 @@ class Check:
 
 @dataclass
 class CheckResults:
-    """All trials of a lesson."""
+    """All checks of a course project, in order."""
 
     checks: List[Check] = field(default_factory=list)
 
     def add(self, passed: bool, description: str) -> str:
-        """Adds a trial; returns what is told of it."""
+        """Add a check; returns its description."""
         self.checks.append(Check(passed, description))
         return description
 
     def verdict(self, failure: Optional[str] = None) -> ProjectVerdict:
-        """Success if something was tried and all of it went well; ``failure``: why it was cut short."""
-        good = sum(check.passed for check in self.checks)
-        story = "; ".join(check.description for check in self.checks) or "nothing tried"
+        """Success if there was a check and all passed.
+
+        Args:
+            failure: Why the run was cut short, if it was.
+        """
+        passed = sum(check.passed for check in self.checks)
+        summary = "; ".join(check.description for check in self.checks) or "nothing checked"
         if failure:
-            return ProjectVerdict(False, f"{failure}; {story}")
-        return ProjectVerdict(0 < good == len(self.checks), f"{good} of {len(self.checks)} as meant: {story}")
+            return ProjectVerdict(False, f"{failure}; {summary}")
+        return ProjectVerdict(
+            0 < passed == len(self.checks), f"{passed} of {len(self.checks)} checks passed: {summary}"
+        )

@@ -1,4 +1,4 @@
-"""Projects of the course that have no script of their own, recognised by what their launch files start."""
+"""Launch plans of course projects without a script, recognized by the nodes in their launch files."""
 
 import enum
 import re
@@ -15,33 +15,38 @@ _WORLD = re.compile(r"empty_world\.launch|type=\"gz(?:server|ebo)\"")
 
 
 class CourseProject(enum.Enum):
-    """Which project of the course; the value is what it is called on the command line."""
+    """Project of the course; the value is its name on the command line."""
 
     MAP = "map_my_world"
     LOCALIZE = "where_am_i"
     CHASE = "go_chase_it"
 
 
-# What the launch file of a lesson starts, and how it is called most often; later ones
-# contain earlier ones.
+# Node that identifies the launch file of a project, and the usual name of that file. Checked in this order,
+# because later projects contain the earlier ones.
 _SIGNATURES: Mapping[CourseProject, Tuple["re.Pattern[str]", str]] = {
     CourseProject.MAP: (re.compile(r'pkg="(?:rtabmap_ros|gmapping)"'), "mapping"),
     CourseProject.LOCALIZE: (re.compile(r'pkg="amcl"'), "amcl"),
     CourseProject.CHASE: (re.compile(r'type="process_image(?:\.py)?"'), "ball_chaser"),
 }
-# With a database that is already there, which no lesson begins with.
+# Launch files of rtabmap that need an existing database: not the start of a project.
 _LOCALIZATION_ONLY = "localization"
 
 
 @dataclass(frozen=True)
 class ProjectLaunchPlan:
-    """A lesson, and the words after roslaunch, one a window: ``my_robot world.launch``."""
+    """A course project and its launch files.
+
+    Attributes:
+        project: The project.
+        launches: Arguments of roslaunch for each window, as ``my_robot world.launch``.
+    """
 
     project: CourseProject
     launches: Tuple[str, ...]
 
     def script(self) -> str:
-        """What a person types, each line in a terminal of its own."""
+        """Shell script that opens a terminal window for each launch file."""
         lines = [f'xterm -e "roslaunch {launch}" &' for launch in self.launches]
         return "\n".join(["#!/bin/sh", *lines, "wait"]) + "\n"
 
@@ -49,19 +54,25 @@ class ProjectLaunchPlan:
 def find_launch_plan(
     packages: Mapping[str, Path], texts: Mapping[str, str], wanted: Optional[str]
 ) -> Optional[ProjectLaunchPlan]:
-    """The lesson of a checkout with ``packages`` (folders by name), the ``wanted`` one or the last there is.
+    """Find the launch files of a course project.
 
-    ``texts``: the contents of its files by path. None if there is none.
+    Args:
+        packages: Package name -> folder, relative to the checkout.
+        texts: Contents of the files, by path relative to the checkout.
+        wanted: Name of the project; None for the last one that the checkout contains.
+
+    Returns:
+        The launch plan, or None if no launch file starts the nodes of the project.
     """
     launches = dict(_launch_files(packages, texts))
-    for project, (sign, name) in _SIGNATURES.items():
+    for project, (signature, name) in _SIGNATURES.items():
         if wanted not in (None, project.value):
             continue
         started = [
             file
             for file, text in launches.items()
-            if sign.search(text)
-            or (Path(file).stem == name and any(sign.search(part) for part in _included(text, launches)))
+            if signature.search(text)
+            or (Path(file).stem == name and any(signature.search(part) for part in _included(text, launches)))
         ]
         if not started:
             continue
@@ -87,13 +98,13 @@ def _launch_files(packages: Mapping[str, Path], texts: Mapping[str, str]) -> Ite
 
 
 def _included(text: str, launches: Mapping[str, str]) -> Iterator[str]:
-    """The launch files that one includes, by their names."""
+    """Texts of the launch files that a launch file includes, matched by name."""
     names = {Path(path).name for path in _INCLUDED.findall(text)}
     return (other for file, other in launches.items() if Path(file).name in names)
 
 
 def _name_rank(file: str, name: str) -> Tuple[bool, bool, int, str]:
-    """Small for what is called as most call it."""
+    """Sort key: the usual name first."""
     stem = Path(file).stem
     return _LOCALIZATION_ONLY in stem, stem != name, len(file), file
 
@@ -107,7 +118,7 @@ def _roslaunch_arguments(file: str, packages: Mapping[str, Path]) -> str:
 
 
 def _with_required_arguments(words: str, launch: str, texts: Mapping[str, str]) -> str:
-    """With the arguments that its author's scripts give, if the launch file lacks some without them."""
+    """Add the arguments that the author's scripts pass, if the launch file has required ones."""
     required = _required_arguments(launch)
     if not required:
         return words
@@ -122,7 +133,7 @@ def _with_required_arguments(words: str, launch: str, texts: Mapping[str, str]) 
 
 
 def _required_arguments(launch: str) -> Set[str]:
-    """Arguments of a launch file that have no value unless they are given one."""
+    """Arguments of a launch file without a default."""
     declared: Dict[str, bool] = {}
     for tag in _ARGUMENT.findall(launch):
         for name in _NAME.findall(tag):

@@ -1,1 +1,1 @@
-"""Tells from what a run left behind whether the project did what it set out to do."""
+"""Record of a run, and the verdict on it."""

@@ -1,4 +1,4 @@
-"""What went wrong by the words of those it went wrong for: the errors in the logs of a run's windows."""
+"""Errors in the logs of a run's terminal windows."""
 
 import re
 from pathlib import Path
@@ -14,7 +14,14 @@ _ERROR_LINE = re.compile(
 
 
 def find_log_errors(folder: Path) -> List[str]:
-    """The first lines that tell of errors, each once, with the log's name before it."""
+    """Find error lines in the logs of a folder.
+
+    Args:
+        folder: Folder with a ``*.log`` for each window; ``build.log`` is ignored.
+
+    Returns:
+        The first MAX_ERRORS lines as ``LOG: LINE``, without duplicates and colour codes.
+    """
     found: List[str] = []
     for log in sorted(set(folder.glob("*.log")) - {folder / "build.log"}):
         for line in log.read_text(errors="replace").splitlines():

@@ -17,16 +17,26 @@ STATUS_NAMES = (
     "lost",
 )
 FINAL_STATUSES = frozenset(("preempted", "succeeded", "aborted", "rejected", "recalled", "lost"))
-# Metres: a marker that moves by less stays; a robot that moves by more at once has been put there.
+# Displacement below which a marker or goal counts as unchanged, and above which a step of the robot counts
+# as a teleport [m].
 SAME_PLACE_DISTANCE = 0.1
 JUMP_DISTANCE = 0.5
-# Metres from a goal within which a project may call it reached, and cancel it, by its own measure.
+# Distance from a goal within which a project may cancel it as reached [m].
 CANCELLED_GOAL_TOLERANCE = 0.5
 
 
 @dataclass
 class ProjectGoal:
-    """A goal, its place, how it ended, and how far from it the robot truly was then; metres, if known."""
+    """A navigation goal and how it ended; an entry of ``goals`` in result.json.
+
+    Attributes:
+        status: Name of the actionlib status.
+        text: Status text of the action server.
+        place: x, y in the frame of the goal [m]; None if the goal message was not received.
+        sent: Simulated time at which it was sent [s].
+        ended: Simulated time at which it ended [s].
+        distance: True distance between robot and goal at that time [m].
+    """
 
     status: str = "pending"
     text: str = ""
@@ -37,20 +47,20 @@ class ProjectGoal:
 
     @property
     def is_reached(self) -> bool:
-        """Whether it succeeded, or was cancelled by who sent it when the robot was there."""
+        """Whether it succeeded, or was cancelled while the robot was there."""
         is_near = self.distance is not None and self.distance < CANCELLED_GOAL_TOLERANCE
         return self.status == "succeeded" or (self.status == "preempted" and is_near)
 
 
 @dataclass
 class _PlaceVisit:
-    """Goals at one place, one after the other."""
+    """Consecutive goals at one position."""
 
     goals: List[ProjectGoal]
 
     @property
     def tries(self) -> int:
-        """How many goals it took to get there; 0 if the robot did not."""
+        """Number of goals until the position was reached; 0 if it was not."""
         return next((number for number, goal in enumerate(self.goals, 1) if goal.is_reached), 0)
 
     @property
@@ -60,9 +70,17 @@ class _PlaceVisit:
 
 @dataclass
 class ProjectRunRecord:
-    """What has been seen of a run, by simulated time. Each ``see`` returns the news in words, or None.
+    """Goals, markers, collisions and distance of a run, by simulated time.
 
-    What markers do once more is no news, until a goal has been: some blink, or are shown anew, for ever.
+    Methods that update it return a description of the event, or None if nothing new happened. A marker event
+    that repeats is not new until the next goal: some projects republish or blink markers forever.
+
+    Attributes:
+        goals: Goal id -> goal, in the order of sending.
+        markers: Descriptions of marker events.
+        collisions: Name of the body at each contact.
+        distance_driven: Path length of the robot without teleports [m].
+        last_event_time: Simulated time of the last goal or marker event [s].
     """
 
     goals: Dict[str, ProjectGoal] = field(default_factory=dict)
@@ -75,11 +93,11 @@ class ProjectRunRecord:
     _reported_events: Set[Tuple[bool, int, int]] = field(default_factory=set)
 
     def add_goal(self, now: float, name: str, place: Tuple[float, float]) -> None:
-        """A goal was sent."""
+        """Add a goal that was sent."""
         self._goal(now, name).place = place
 
     def update_status(self, now: float, name: str, number: int, text: str) -> Optional[str]:
-        """The server said how a goal stands."""
+        """Update a goal by its actionlib status."""
         goal = self._goal(now, name)
         status = STATUS_NAMES[number] if 0 <= number < len(STATUS_NAMES) else "lost"
         if status == goal.status or goal.status in FINAL_STATUSES:
@@ -90,66 +108,66 @@ class ProjectRunRecord:
             goal.ended = now
             if goal.place and self._position:
                 goal.distance = round(math.dist(goal.place, self._position), 3)
-        said = f": {text}" if text and status not in ("active", "succeeded") else ""
-        return f"goal {list(self.goals).index(name) + 1}{at_position(goal.place)} {status}{said}"
+        detail = f": {text}" if text and status not in ("active", "succeeded") else ""
+        return f"goal {list(self.goals).index(name) + 1}{at_position(goal.place)} {status}{detail}"
 
     def update_marker(
         self, now: float, marker: Tuple[str, int], place: Optional[Tuple[float, float]]
     ) -> Optional[str]:
-        """A marker was shown at a place, or hidden (None)."""
+        """Update a marker, identified by namespace and id: shown at x, y [m], or hidden (None)."""
         before = self._shown.get(marker)
         if place is None:
             if before is None:
                 return None
             del self._shown[marker]
-            news = "hidden"
+            change = "hidden"
         elif before is not None and math.dist(before, place) < SAME_PLACE_DISTANCE:
             return None
         else:
             self._shown[marker] = place
-            news = f"shown{at_position(place)}"
+            change = f"shown{at_position(place)}"
         x, y = place or before or (0.0, 0.0)
         event = (place is None, round(x / SAME_PLACE_DISTANCE), round(y / SAME_PLACE_DISTANCE))
         if event in self._reported_events:
             return None
         self._reported_events.add(event)
         self.last_event_time = now
-        self.markers.append(news)
-        return f"marker {news}"
+        self.markers.append(change)
+        return f"marker {change}"
 
     def delete_all_markers(self, now: float) -> Optional[str]:
-        """All markers were deleted."""
-        news = [self.update_marker(now, marker, None) for marker in list(self._shown)]
-        return news[0] if news else None
+        """Update all markers as hidden."""
+        events = [self.update_marker(now, marker, None) for marker in list(self._shown)]
+        return events[0] if events else None
 
     def update_position(self, position: Tuple[float, float]) -> None:
-        """Where the robot truly is; a jump, as by a service of the simulator, is not driven."""
+        """Update the true position of the robot [m]; teleports do not count as driven."""
         if self._position is not None:
             step = math.dist(self._position, position)
             self.distance_driven += step if step < JUMP_DISTANCE else 0.0
         self._position = position
 
     def add_collision(self, name: str) -> Optional[str]:
-        """The robot touches something; that it does so again is no news."""
-        is_news = name not in self.collisions
+        """Add a contact of the robot with a body; only the first with each body is reported."""
+        is_new = name not in self.collisions
         self.collisions.append(name)
-        return f"collision with {name}" if is_news else None
+        return f"collision with {name}" if is_new else None
 
     @property
     def all_goals_ended(self) -> bool:
-        """Whether a goal has been sent and none is under way."""
+        """Whether a goal has been sent and none is active."""
         return bool(self.goals) and all(goal.status in FINAL_STATUSES for goal in self.goals.values())
 
     @property
     def is_object_picked_up(self) -> bool:
-        """Whether markers have been shown and none is now: what was picked up is still to be set down."""
+        """Whether markers were shown and all are hidden: the object is picked up and not yet delivered."""
         return bool(self.markers) and not self._shown
 
     @property
     def goals_of_two_rounds(self) -> int:
-        """The number of goals after which it had been through some places twice; 0 if it has not.
+        """Number of goals after which a sequence of positions was visited twice; 0 if none was.
 
-        Goals at one place in a row count as one, and none may have been in vain until then.
+        Consecutive goals at one position count as one visit; every visit until then must have been reached.
         """
         visits = _visits(list(self.goals.values()))
         for end, visit in enumerate(visits, 1):
@@ -162,7 +180,7 @@ class ProjectRunRecord:
         return 0
 
     def findings(self) -> Dict[str, Any]:
-        """What belongs into result.json."""
+        """Entries of result.json."""
         return {
             "goals": [vars(goal) for goal in self.goals.values()],
             "markers": self.markers,

@@ -10,7 +10,7 @@ MAX_REPORTED_EVENTS = 8
 
 @dataclass(frozen=True)
 class ProjectVerdict:
-    """Whether a run succeeded, and why."""
+    """Whether a run of a project succeeded, and why."""
 
     success: bool
     reason: str
@@ -22,11 +22,16 @@ def judge(
     requires_goals: bool = False,
     expected: Optional[Sequence[str]] = None,
 ) -> ProjectVerdict:
-    """Success if the robot reached all places it was sent to; without goals, if the project showed a marker.
+    """Judge a run: success if all goals were reached or, without goals, if the project showed a marker.
 
-    A goal that failed and was sent again does not count, nor do those of a third round of the same places.
-    ``failure``: why the run was cut short, if it was. ``is_errand``: markers alone are not enough.
-    ``expected``: how the goals have to end instead, one after the other.
+    A failed goal that was sent again and reached does not count, nor do goals after two rounds of the same
+    positions.
+
+    Args:
+        record: Goals and markers of the run.
+        failure: Why the run was cut short, if it was.
+        requires_goals: Whether a marker without a goal is a failure.
+        expected: Expected final status of each goal, instead of success.
     """
     goals = list(record.goals.values())[: record.goals_of_two_rounds or None]
     reached = sum(goal.is_reached for goal in goals)
@@ -39,20 +44,20 @@ def judge(
         return ProjectVerdict(False, f"{failure}; {reached} of {len(goals)} goals reached")
     if expected is not None:
         endings = [goal.status for goal in goals]
-        is_so = endings == list(expected)
-        said = "as expected" if is_so else f"instead of {', '.join(expected)}"
-        story = f"{', '.join(endings) or 'none'}, {said}"
-        return ProjectVerdict(is_so, f"{reached} of {len(goals)} goals reached; {story}")
+        is_expected = endings == list(expected)
+        comparison = "as expected" if is_expected else f"instead of {', '.join(expected)}"
+        summary = f"{', '.join(endings) or 'none'}, {comparison}"
+        return ProjectVerdict(is_expected, f"{reached} of {len(goals)} goals reached; {summary}")
     if failed:
         return ProjectVerdict(False, f"{reached} of {len(goals)} goals reached; {'; '.join(failed)}")
-    story = f"markers: {', '.join(_shortened(record.markers))}" if record.markers else "no marker shown"
+    summary = f"markers: {', '.join(_shortened(record.markers))}" if record.markers else "no marker shown"
     if goals:
-        return ProjectVerdict(True, f"{reached} of {len(goals)} goals reached; {story}")
-    return ProjectVerdict(bool(record.markers) and not requires_goals, f"no goal sent; {story}")
+        return ProjectVerdict(True, f"{reached} of {len(goals)} goals reached; {summary}")
+    return ProjectVerdict(bool(record.markers) and not requires_goals, f"no goal sent; {summary}")
 
 
 def _shortened(events: List[str]) -> List[str]:
-    """Without the middle, where a marker went with the robot."""
+    """Shorten a list of events by its middle, as for a marker that moves with the robot."""
     if len(events) <= MAX_REPORTED_EVENTS:
         return events
     half = MAX_REPORTED_EVENTS // 2

@@ -1,1 +1,1 @@
-"""Gets a project ready to run: the copy of it that is built, and the file system that it sees."""
+"""Preparation of a run: the built copy of the project, and the mount namespace in which it runs."""

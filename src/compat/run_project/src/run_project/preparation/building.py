@@ -1,4 +1,4 @@
-"""A workspace for the project on top of ours: copied, completed and built in a work folder."""
+"""The project's workspace: copied into a work folder, completed, and built on top of this workspace."""
 
 import os
 import re
@@ -18,14 +18,14 @@ from run_project.preparation.selection import select_packages
 from run_project.stand_ins import PACKAGE_FOLDER, STAND_INS
 
 FRESH_CLONE = PACKAGE_FOLDER / "cmake" / "fresh_clone.cmake"
-# A bound on how many packages may turn out one after the other not to be configurable.
+# Limit of repeated configurations; each excludes the packages that fail to configure.
 MAX_CONFIGURATIONS = 20
 MODEL_PATH = "GAZEBO_MODEL_PATH"
-# What authors set in a file of their home, and what it is most often.
+# Variables that authors set in ~/.bashrc, with the most common value.
 DEFAULT_VARIABLES = {"TURTLEBOT3_MODEL": "burger"}
 CONFIGURATION_INCOMPLETE = "Configuring incomplete"
 
-# From one error of CMake to its reason, and to the first of a project's files in its call stack.
+# A CMake error, its reason, and the first file of the project in its call stack.
 _CMAKE_ERROR = re.compile(r"^CMake Error at ", re.MULTILINE)
 _CMAKE_REASON = re.compile(r"\n\s*([^\n]+)")
 _CMAKE_PLACE = re.compile(r"(\S+?)/CMakeLists\.txt:\d+")
@@ -41,11 +41,17 @@ class BuildError(PlanarError):
 
 @dataclass
 class Workspace:
-    """A project's copy.
+    """The copy of a project in a catkin workspace. Paths are absolute.
 
-    ``pretended``: a folder for packages that are not there. ``model_folders``: where Gazebo's models lie.
-    ``unbuilt``: packages whose files alone are used. ``missing``: packages that are not as their author meant
-    them, with the reason. ``absent_targets``: what they ask CMake to be built after, and nobody builds.
+    Attributes:
+        folder: Folder of the workspace.
+        checkout: Copy of the checkout.
+        packages: Package name -> folder.
+        placeholders: CMake prefix for empty packages that replace missing dependencies.
+        model_folders: Folders with Gazebo models.
+        unbuilt: Packages that are not built; only their files are used.
+        missing: Package that is excluded, replaced or incomplete -> reason.
+        absent_targets: CMake targets that packages depend on and that no package defines.
     """
 
     folder: Path
@@ -59,9 +65,14 @@ class Workspace:
 
 
 def copy_checkout(checkout: Checkout, placement: Placement, work: Path) -> Workspace:
-    """Copies the project afresh below ``work``/tree.
+    """Copy the project to ``work``/tree.
 
-    What was built before is kept beside it; as times of files are kept, only what has changed is built again.
+    Earlier build results and file times are kept, so that only changed files are built again.
+
+    Args:
+        checkout: The project.
+        placement: Where checkout and workspace go below the tree.
+        work: Work folder of the project.
     """
     tree = work / "tree"
     if tree.exists():
@@ -77,7 +88,7 @@ def copy_checkout(checkout: Checkout, placement: Placement, work: Path) -> Works
         },
     )
     link_substitutes(checkout.substitutes, target)
-    for program in checkout.programs():  # git of some authors does not know that they can be executed
+    for program in checkout.programs():  # often committed without the executable bit
         (target / program).chmod(0o755)
     for missing, found in placement.links.items():
         link = tree / missing
@@ -87,25 +98,36 @@ def copy_checkout(checkout: Checkout, placement: Placement, work: Path) -> Works
     for name in ("build", "devel"):
         (work / name).mkdir(exist_ok=True)
         (workspace / name).symlink_to(work / name)
-    (workspace / "src" / "CMakeLists.txt").unlink(missing_ok=True)  # often a link to the author's ROS
+    (workspace / "src" / "CMakeLists.txt").unlink(
+        missing_ok=True
+    )  # often a link into the author's ROS installation
     packages = {name: target / folder for name, folder in checkout.packages.items()}
     model_folders = tuple(target / folder for folder in checkout.model_folders())
     return Workspace(workspace, target, packages, work / "pretended", model_folders)
 
 
 def build(workspace: Workspace, log: Path, report: Callable[[str], None]) -> None:
-    """Builds all that can be built. Raises BuildError if the workspace cannot even be configured."""
+    """Build the workspace; packages that fail are excluded and added to ``workspace.missing``.
+
+    Args:
+        workspace: The project's copy.
+        log: File to which the output of catkin_make is appended.
+        report: Called with a line for each excluded or replaced package.
+
+    Raises:
+        BuildError: The workspace cannot be configured.
+    """
     stand_ins = {folder.name: folder for folder in PACKAGE_FOLDER.parent.iterdir()}
     selection = select_packages(workspace.packages, stand_ins, _is_installed)
     for name in selection.replaced:
-        # Ignored by everything that looks for packages, so that ours is found.
+        # With CATKIN_IGNORE, catkin and rospack find the package of this workspace instead.
         (workspace.packages[name] / "CATKIN_IGNORE").touch()
     workspace.missing.update(selection.replaced)
-    _report_packages("ours in place of", selection.replaced, report)
+    _report_packages("replaced by a package of this workspace:", selection.replaced, report)
     _exclude(workspace, selection.unbuilt, report)
     for name, users in selection.absent.items():
         _create_placeholder(workspace, name)
-        report(f"  there is no package {name}; built without it: {', '.join(users)}")
+        report(f"  package {name} is not installed; built without it: {', '.join(users)}")
     _convert_python2(workspace, report)
     for _ in range(MAX_CONFIGURATIONS):
         output = _catkin_make(workspace, log)
@@ -116,19 +138,18 @@ def build(workspace: Workspace, log: Path, report: Callable[[str], None]) -> Non
             break
         _exclude(workspace, broken, report)
     if CONFIGURATION_INCOMPLETE in output or not (workspace.folder / "devel" / "setup.bash").exists():
-        raise BuildError(f"the project's workspace could not be configured, see {log}")
+        raise BuildError(f"the project's workspace cannot be configured; see the CMake errors in {log}")
     if _failed(output):
-        output = _catkin_make(workspace, log)  # messages may be generated later than their users are compiled
+        output = _catkin_make(
+            workspace, log
+        )  # undeclared message dependencies: messages may be generated after their users are compiled
     broken = _broken_sources(workspace, output)
     workspace.missing.update(broken)
     _report_packages("not compiled:", broken, report)
 
 
 def environment(workspace: Workspace) -> Dict[str, str]:
-    """The environment that sourcing the workspace gives, and what is assumed where nobody says it.
-
-    Gazebo's models are found where they lie in it.
-    """
+    """Environment after sourcing the workspace, with the model folders and default variables added."""
     script = 'source "$1/devel/setup.bash" >&2; exec env -0'
     kept = {name: value for name, value in os.environ.items() if not name.startswith("TURTLEBOT_")}
     output = subprocess.run(
@@ -159,14 +180,14 @@ def _report_packages(what: str, reasons: Dict[str, str], report: Callable[[str],
 
 
 def _create_placeholder(workspace: Workspace, name: str) -> None:
-    """Lets CMake find an empty package: much of what is asked for is needed to run, or not at all."""
+    """Create an empty CMake package: many declared dependencies are needed only at run time, or never."""
     folder = workspace.placeholders / "share" / name / "cmake"
     folder.mkdir(parents=True, exist_ok=True)
     (folder / f"{name}Config.cmake").write_text(f"set({name}_FOUND_CATKIN_PROJECT TRUE)\n")
 
 
 def _convert_python2(workspace: Workspace, report: Callable[[str], None]) -> None:
-    """Makes Python 3 of the scripts in Python 2, in the copy."""
+    """Convert Python 2 scripts of the copy to Python 3."""
     changed = []
     for name in sorted(set(workspace.packages) - set(workspace.missing)):
         for script in sorted(workspace.packages[name].rglob("*.py")):
@@ -176,11 +197,11 @@ def _convert_python2(workspace: Workspace, report: Callable[[str], None]) -> Non
                 script.write_text(text, encoding="utf-8", errors="surrogateescape")
                 changed.append(script.name)
     if changed:
-        report(f"  in Python 2, made Python 3 of in the copy: {', '.join(changed)}")
+        report(f"  converted from Python 2 to Python 3 in the copy: {', '.join(changed)}")
 
 
 def _catkin_make(workspace: Workspace, log: Path) -> str:
-    """Runs it and returns what it printed; a failed target does not keep others from being built."""
+    """Run catkin_make and return its output; a failed target does not stop the others."""
     command = [
         "catkin_make",
         f"-DCMAKE_PROJECT_INCLUDE={FRESH_CLONE}",
@@ -189,14 +210,14 @@ def _catkin_make(workspace: Workspace, log: Path) -> str:
         f"-DCATKIN_BLACKLIST_PACKAGES={';'.join(sorted(workspace.unbuilt))}",
         "-Wno-dev",
     ]
-    # The second name is the one that catkin of Debian 13 knows.
+    # Debian 13's catkin uses the second name.
     command += [f"-D{name}_EXECUTABLE={shutil.which('python3')}" for name in ("PYTHON", "Python")]
     command += ["--force-cmake", "--make-args", "-k"]
     variables = {
         "CMAKE_PREFIX_PATH": f"{STAND_INS}:{os.environ['CMAKE_PREFIX_PATH']}:{workspace.placeholders}",
         "LC_ALL": "C",
-        "PWD": str(workspace.folder),  # catkin_make goes by it
-        "ROS_PARALLEL_JOBS": f"-j{os.cpu_count()}",  # its own default waits while the machine is busy
+        "PWD": str(workspace.folder),  # read by catkin_make
+        "ROS_PARALLEL_JOBS": f"-j{os.cpu_count()}",  # the default waits while the load is high
     }
     make = subprocess.Popen(
         command,
@@ -229,11 +250,11 @@ def broken_configurations(workspace: Workspace, output: str) -> Dict[str, str]:
         return {}
     broken: Dict[str, str] = {}
     for error in _CMAKE_ERROR.split(output)[1:]:
-        place, said, missing = (p.search(error) for p in (_CMAKE_PLACE, _CMAKE_REASON, _MISSING_CONFIG))
+        place, message, missing = (p.search(error) for p in (_CMAKE_PLACE, _CMAKE_REASON, _MISSING_CONFIG))
         if missing:
-            reason = f"needs {missing.group(1)}, which is not there"
+            reason = f"needs {missing.group(1)}, which is not installed"
         else:
-            reason = said.group(1) if said else "cannot be configured"
+            reason = message.group(1) if message else "cannot be configured"
         for name in _packages_at(workspace, place.group(1)) - set(workspace.missing) if place else ():
             broken.setdefault(name, reason)
     return broken
@@ -250,6 +271,6 @@ def _broken_sources(workspace: Workspace, output: str) -> Dict[str, str]:
 
 
 def _packages_at(workspace: Workspace, path: str) -> Set[str]:
-    """The package that a file or folder belongs to; CMake names it relative to src, compilers absolutely."""
+    """The package that contains a path; CMake prints it relative to src, compilers print it absolute."""
     place = Path(path) if path.startswith("/") else workspace.folder / "src" / path
     return {name for name, folder in workspace.packages.items() if place == folder or folder in place.parents}

@@ -1,8 +1,7 @@
-"""A file system of its own for one run, in which folders appear where the project's author had them.
+"""Private mount namespace in which folders appear at the paths where the project's author had them.
 
-Run as a program by ``unshare``, in a mount namespace of its own: builds a root in which everything is where
-it is, and the mounts besides; then becomes the command. Nothing outside of it changes, and it ends with the
-last process in it.
+Run as a program by ``unshare``: binds the host's files and the mounts into a new root, then executes the
+command. The host is not changed; the namespace ends with its last process.
 """
 
 import ctypes
@@ -23,9 +22,14 @@ class MountError(PlanarError):
 
 
 def private_mount_command(mounts: Mapping[Path, Path], root: Path) -> List[str]:
-    """What to put before a command for it to run where ``mounts`` (target: source) are seen.
+    """Command prefix that runs a command in a private mount namespace.
 
-    ``root`` is an empty folder. Raises PlaceError if this system allows no private mounts.
+    Args:
+        mounts: Target path -> source path, absolute; without mounts the prefix is empty.
+        root: An empty folder for the new root.
+
+    Raises:
+        MountError: This system does not allow private mounts.
     """
     if not mounts:
         return []
@@ -36,19 +40,19 @@ def private_mount_command(mounts: Mapping[Path, Path], root: Path) -> List[str]:
         trial = subprocess.run([*unshare, "true"], capture_output=True, text=True)
         refusal = trial.stderr.strip() if trial.returncode else ""
     except FileNotFoundError:
-        refusal = "there is no command unshare"
+        refusal = "the command unshare is not installed"
     if refusal:
         targets = ", ".join(map(str, mounts))
         raise MountError(
-            f"the project's files name {targets}, and this system does not let them be provided ({refusal}): "
-            "run as root, allow user namespaces, or put the project there"
+            f"the project's files refer to {targets}, which cannot be mounted on this system ({refusal}): "
+            "run as root, allow user namespaces, or move the project there"
         )
     plan = json.dumps([[str(target), str(source)] for target, source in mounts.items()])
     return [*unshare, sys.executable, "-m", "run_project.preparation.private_root", str(root), plan]
 
 
 def bind_tree(host: Path, new: Path, mounts: Mapping[Path, Path]) -> None:
-    """Fills the empty folder ``new`` with what is in ``host``, and with the mounts at and below ``host``."""
+    """Bind the entries of ``host``, and the mounts at and below it, into the empty folder ``new``."""
     inner = {target: source for target, source in mounts.items() if host in target.parents}
     above = {host / target.relative_to(host).parts[0] for target in inner}
     shown: Dict[Path, Path] = {}

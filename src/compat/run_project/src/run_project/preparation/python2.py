@@ -1,4 +1,4 @@
-"""Scripts of Kinetic's time are in Python 2: the same in Python 3."""
+"""Conversion of Python 2 scripts, as used with ROS Kinetic, to Python 3."""
 
 import warnings
 
@@ -6,12 +6,12 @@ from fissix.pgen2.parse import ParseError
 from fissix.pgen2.tokenize import TokenError
 from fissix.refactor import RefactoringTool, get_fixers_from_package
 
-# As wide as Python 2 took them.
+# Columns of a tab in Python 2.
 TAB_WIDTH = 8
 
 
 def to_python3(source: str) -> str:
-    """The source in Python 3; as it is if it is that already, or no Python at all."""
+    """Convert a script to Python 3; Python 3 and texts that are not Python are returned unchanged."""
     if _is_python3(source):
         return source
     without_tabs = source.expandtabs(TAB_WIDTH)

@@ -1,12 +1,12 @@
-"""Which of a project's packages are built, and which are left out, and why."""
+"""Selection of the project's packages to build."""
 
 import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Callable, Dict, List, Mapping, Set
 
-# Packages of TurtleBot's time that projects carry along in source. Compiled, they ask for a Boost or a
-# pluginlib of their day; in simulation nothing of them is needed that is not here already.
+# Packages that projects vendor as source. They need old versions of Boost or pluginlib, and the simulation
+# provides their function.
 VENDORED_PACKAGES = re.compile(
     r"(openslam_gmapping|gmapping|slam_gmapping|turtlebot_.+|kobuki_.+|yocs_.+|yujin_.+|ecl_.+|create_.+|"
     r"amcl|map_server|move_base|move_slow_and_clear|navfn|nav_core|global_planner|base_local_planner|"
@@ -24,10 +24,12 @@ _FIND = re.compile(r"\$\(find\s+([\w-]+)\)")
 
 @dataclass(frozen=True)
 class PackageSelection:
-    """What is not built of a project, and why.
+    """Packages of a project that are not built as they are.
 
-    ``replaced``: packages whose place ours take. ``unbuilt``: packages of which only the files are used, as
-    launch files and worlds. ``absent``: packages that are nowhere, each with those that ask for it.
+    Attributes:
+        replaced: Package that is replaced by one of this workspace -> reason.
+        unbuilt: Package of which only files, as launch files and worlds, are used -> reason.
+        absent: Dependency that is not installed -> packages that declare it.
     """
 
     replaced: Dict[str, str]
@@ -38,10 +40,12 @@ class PackageSelection:
 def select_packages(
     folders: Mapping[str, Path], stand_ins: Mapping[str, Path], is_installed: Callable[[str], bool]
 ) -> PackageSelection:
-    """Divides the packages in a project's ``folders``.
+    """Select the packages to build.
 
-    ``stand_ins``: the folders of this workspace's packages that stand in for official ones. ``is_there``:
-    whether a package can be found by catkin outside the project.
+    Args:
+        folders: Package name -> folder, of the project.
+        stand_ins: Package name -> folder, of this workspace's replacements for official packages.
+        is_installed: Whether catkin finds a package outside of the project.
     """
     replaced: Dict[str, str] = {}
     unbuilt: Dict[str, str] = {}
@@ -53,11 +57,11 @@ def select_packages(
             other for other in _found_in_xacro(folder) if other not in folders and not is_installed(other)
         )
         if name in stand_ins and lost_parts:
-            replaced[name] = f"its robots need {', '.join(lost_parts)}, which is not there"
+            replaced[name] = f"its robots need {', '.join(lost_parts)}, which is not installed"
         elif name in stand_ins and is_compiled and _has_nodes_or_messages(stand_ins[name]):
-            replaced[name] = "sources of that time do not build today"
+            replaced[name] = "its sources do not build with current libraries"
         elif is_compiled and VENDORED_PACKAGES.fullmatch(name):
-            unbuilt[name] = "sources of that time do not build today; the simulation does without"
+            unbuilt[name] = "its sources do not build with current libraries; not needed in simulation"
         else:
             for other in sorted(_components(cmake) - set(folders)):
                 if not is_installed(other):
@@ -79,7 +83,7 @@ def _found_in_xacro(folder: Path) -> Set[str]:
 
 
 def _read(file: Path) -> str:
-    """The text without the comments of CMake."""
+    """Text of a file without CMake comments; empty if it cannot be read."""
     try:
         return re.sub(r"#.*", "", file.read_text(errors="replace"))
     except OSError:

@@ -1,4 +1,4 @@
-"""rviz without a window: subscribes to what its configuration displays, and looks at nothing."""
+"""Stand-in for rviz without a window: subscribes to the topics that its configuration displays."""
 
 import os
 import sys
@@ -15,7 +15,7 @@ OPTIONS = ("-d", "--display-config")
 
 
 def main() -> None:
-    """Becomes the real rviz if there is one to be shown."""
+    """Run the node ``rviz``; executes the real rviz instead if the run has ``--rviz``."""
     if os.environ.get(RVIZ_VARIABLE):
         os.execvpe("rviz", ["rviz", *sys.argv[1:]], without_stand_ins(os.environ))
     rospy.init_node("rviz", anonymous=True)
@@ -25,7 +25,7 @@ def main() -> None:
         try:
             text = config.read_text(errors="replace")
         except OSError as error:
-            print(f"[rviz] {config}: {error.strerror}; showing rviz' default", file=sys.stderr)
+            print(f"[rviz] {config}: {error.strerror}; using an empty configuration", file=sys.stderr)
     for topic in sorted(displayed_topics(text)):
         print(f"[rviz] displays {topic}", flush=True)
         rospy.Subscriber(topic, rospy.AnyMsg, _ignore, queue_size=1, buff_size=1 << 20)
@@ -33,7 +33,7 @@ def main() -> None:
 
 
 def config_file(arguments: List[str]) -> Optional[Path]:
-    """The configuration named on rviz' command line."""
+    """The configuration file in the command line of rviz."""
     for option, value in zip(arguments, [*arguments[1:], ""]):
         name, has_value, inline = option.partition("=")
         if name in OPTIONS:

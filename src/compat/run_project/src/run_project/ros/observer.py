@@ -1,4 +1,4 @@
-"""Sees what a project does, from outside: goals and how they end, markers, the true robot."""
+"""Observer of a project: records goals, markers, contacts and the true position of the robot."""
 
 import struct
 import threading
@@ -16,16 +16,22 @@ from visualization_msgs.msg import Marker, MarkerArray
 
 from run_project.judging.run_record import ProjectRunRecord
 
-# seq and stamp at the start of a message with a header: what changes when nothing else does.
+# Size of seq and stamp at the start of a serialized header: they differ between otherwise equal messages.
 CHANGING_BYTES = struct.calcsize("<III")
-# Most projects' markers; their nodes wait until somebody listens.
+# The usual marker topic; project nodes wait for a subscriber.
 MARKERS = "/visualization_marker"
-# Their markers are about themselves, not about the project's story.
+# Nodes whose markers and goals are not those of the project.
 ROBOT_NODES = frozenset(("/amcl", "/explore", "/gazebo", "/map_server", "/move_base", "/slam_gmapping"))
 
 
 class Observer:
-    """Fills a ledger from the topics that appear on a master; ``say`` is told each piece of news."""
+    """Fills the record of a run from the topics of a ROS master.
+
+    Attributes:
+        record: Goals, markers, contacts and distance of the run.
+        simulated_time: Latest time on ``/clock`` [s].
+        has_goal_clients: Whether a node of the project can send goals.
+    """
 
     def __init__(self, log_event: Callable[[str], None]):
         self.record = ProjectRunRecord()
@@ -39,20 +45,20 @@ class Observer:
         self._subscribers: List[rospy.Subscriber] = []
 
     def start(self) -> None:
-        """Subscribes to what there always is; this process is a node by then."""
+        """Subscribe to the topics of every run. This process must be a ROS node."""
         self._subscribers += [
             rospy.Subscriber("/clock", Clock, self._on_clock, queue_size=1),
             rospy.Subscriber("/contacts", String, self._on_contacts, queue_size=50),
             rospy.Subscriber("/base_pose_ground_truth", Odometry, self._on_ground_truth, queue_size=50),
         ]
-        # From the start: what is published as soon as somebody has subscribed would be missed later.
+        # Before the project starts: some nodes publish once, as soon as they have a subscriber.
         self._subscribe_markers(MARKERS)
         self._subscribe_goals("/move_base/goal")
         self._subscribe_results("/move_base/result")
         self._seen.update((MARKERS, "/move_base/goal", "/move_base/result"))
 
     def discover_topics(self) -> None:
-        """Subscribes to the topics of interest that are new on the master."""
+        """Subscribe to goal, result and marker topics that are new on the master."""
         master = rosgraph.Master("/run_project")
         publishers, _, _ = master.getSystemState()
         of_project = {topic for topic, nodes in publishers if not ROBOT_NODES.issuperset(nodes)}
@@ -63,8 +69,8 @@ class Observer:
                 "visualization_msgs/Marker": self._subscribe_markers,
                 "visualization_msgs/MarkerArray": self._subscribe_markers,
             }.get(kind)
-            is_theirs = follow != self._subscribe_markers or topic in of_project
-            if follow is not None and is_theirs and topic not in self._seen:
+            is_of_project = follow != self._subscribe_markers or topic in of_project
+            if follow is not None and is_of_project and topic not in self._seen:
                 self._seen.add(topic)
                 follow(topic)
         self.has_goal_clients = any(
@@ -72,7 +78,7 @@ class Observer:
         )
 
     def status(self) -> str:
-        """How things stand, in a line."""
+        """One line for the console: time, distance, latest goal."""
         record = self.record
         goal = f", goal {len(record.goals)} {list(record.goals.values())[-1].status}" if record.goals else ""
         return f"{self.simulated_time:7.1f} s  {record.distance_driven:.1f} m driven{goal}"
@@ -96,30 +102,30 @@ class Observer:
 
     def _on_goal(self, message):
         position = message.goal.target_pose.pose.position
-        self._note(
+        self._update(
             lambda: self.record.add_goal(self.simulated_time, message.goal_id.id, (position.x, position.y))
         )
 
     def _on_status(self, message):
         for status in message.status_list:
-            self._note_status(status)
+            self._update_status(status)
 
     def _on_result(self, message):
-        self._note_status(message.status)
+        self._update_status(message.status)
 
-    def _note_status(self, status):
+    def _update_status(self, status):
         name, number, text = status.goal_id.id, status.status, status.text
-        self._note(lambda: self.record.update_status(self.simulated_time, name, number, text))
+        self._update(lambda: self.record.update_status(self.simulated_time, name, number, text))
 
     def _on_marker_message(self, topic: str, raw: rospy.AnyMsg):
-        """Some publish the same marker a thousand times a second: only what differs is looked into."""
+        """Skip messages equal to the last one: some projects publish a marker a thousand times a second."""
         data, is_array = raw._buff, raw._connection_header["type"].endswith("Array")
         content = data if is_array else data[CHANGING_BYTES:]
         if self._latest.get(topic) == content:
             return
         self._latest[topic] = content
         for marker in MarkerArray().deserialize(data).markers if is_array else [Marker().deserialize(data)]:
-            self._note(partial(self._update_marker, marker))
+            self._update(partial(self._update_marker, marker))
 
     def _update_marker(self, marker: Marker) -> Optional[str]:
         now = self.simulated_time
@@ -140,10 +146,10 @@ class Observer:
 
     def _on_contacts(self, message):
         for name in message.data.splitlines():
-            self._note(partial(self.record.add_collision, name))
+            self._update(partial(self.record.add_collision, name))
 
-    def _note(self, see: Callable[[], Optional[str]]):
+    def _update(self, update: Callable[[], Optional[str]]):
         with self._lock:
-            news = see()
-        if news:
-            self._log_event(f"{self.simulated_time:7.1f} s  {news}")
+            event = update()
+        if event:
+            self._log_event(f"{self.simulated_time:7.1f} s  {event}")

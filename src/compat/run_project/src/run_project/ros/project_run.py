@@ -1,4 +1,4 @@
-"""A project's script, run under a master of its own and watched until its work is done."""
+"""Run of a project's script under a private ROS master, watched until its work is done."""
 
 import contextlib
 import os
@@ -26,24 +26,30 @@ POLL_SECONDS = 0.2
 MASTER_SECONDS = 30.0
 ENTER_SECONDS = 5.0
 SIGINT_SECONDS = 4.0
-# Seconds of wall time without any news, and of simulated time, after which all is done.
+# Time without events after which a run is over. SETTLED: no process of the project is left; IDLE: no goal is
+# active.
 SETTLED_SECONDS = 3.0
 IDLE_WALL_SECONDS, IDLE_SIMULATED_SECONDS = 25.0, 30.0
-# The same once no node is left that could send a goal: a marker may still be moved.
+# No goal is active and no node is left that could send one; a marker may still move.
 NO_CLIENT_WALL_SECONDS, NO_CLIENT_SIMULATED_SECONDS = 8.0, 10.0
-# The same before the first goal.
+# Before the first goal.
 FIRST_GOAL_WALL_SECONDS, FIRST_GOAL_SIMULATED_SECONDS = 90.0, 60.0
-# Seconds of wall time in which some simulated time has to pass.
+# Wall time in which simulated time must advance.
 STALLED_SECONDS = 90.0
-# Runs in a project's workspace whenever that is sourced.
+# Program in the project's workspace that runs whenever the workspace is sourced: not a node.
 SETUP_TOOL = "_setup_util.py"
 
 
 @dataclass(frozen=True)
 class ProjectCommand:
-    """A command in a folder, with an environment; ``work`` is where the project's own files are.
+    """The command that runs a project.
 
-    ``prefix``: before a command for it to see the project's folders where its files name them.
+    Attributes:
+        command: Program and arguments.
+        folder: Working folder.
+        environment: Environment variables.
+        work: Folder of the project's copy; identifies its processes.
+        prefix: Command prefix that provides the project's absolute paths.
     """
 
     command: List[str]
@@ -54,7 +60,12 @@ class ProjectCommand:
 
 
 class ProjectRun:
-    """Context of a run: entering starts a master, leaving ends every process of the run."""
+    """Context of a run: entering starts a ROS master, leaving ends every process of the run.
+
+    Attributes:
+        observer: Records what the project does.
+        user: Performs the interaction of a course project; None for a script.
+    """
 
     def __init__(
         self,
@@ -109,20 +120,27 @@ class ProjectRun:
         end_descendants(2.0)
 
     def environment(self) -> Dict[str, str]:
-        """Of what sees the graph as the project does."""
+        """Environment for programs that join the project's graph."""
         own = {name: os.environ[name] for name in ("ROS_MASTER_URI", "ROS_LOG_DIR")}
         return {**self._project_command.environment, **own}
 
     def record(self, bag: Path) -> None:
-        """Records everything but pictures into a bag, from now on."""
+        """Start recording all topics except images into a bag."""
         command = ["rosbag", "record", "--all", "--exclude", "(.*)camera(.*)", "--output-name", str(bag)]
         self._start_helper("record", command)
 
     def watch(self, timeout: float) -> Optional[str]:
-        """Runs the script until its work is done; returns why it was cut short, or None."""
+        """Run the script until its work is done.
+
+        Args:
+            timeout: Limit of wall time [s].
+
+        Returns:
+            Why the run was cut short, or None.
+        """
         deadline = time.monotonic() + timeout
         script = self._start_script()
-        observer, has_worked, latest_enter = self.observer, False, time.monotonic()
+        observer, had_nodes, latest_enter = self.observer, False, time.monotonic()
         moved_wall, moved_time = time.monotonic(), -1.0
         while True:
             now = time.monotonic()
@@ -135,18 +153,20 @@ class ProjectRun:
             if now - latest_enter > ENTER_SECONDS:
                 latest_enter = now
                 _press_enter(script)
-            own = self._project_processes()
-            lower_priority_of_busy_processes(own)
-            self._report_waiting_programs(own)
-            is_working = bool(own)
-            has_worked = has_worked or is_working
-            nodes_are_gone = has_worked and not is_working
+            processes = self._project_processes()
+            lower_priority_of_busy_processes(processes)
+            self._report_waiting_programs(processes)
+            has_nodes = bool(processes)
+            had_nodes = had_nodes or has_nodes
+            nodes_are_gone = had_nodes and not has_nodes
             if self._is_done(script.poll() is not None, now - self._last_event_wall, nodes_are_gone):
                 return self._script_failure(script.poll())
             if now > deadline:
                 return f"not done within {timeout:g} s of wall time"
             if now - moved_wall > STALLED_SECONDS:
-                what = "no simulated time has passed for" if moved_time else "no simulation has begun within"
+                what = (
+                    "no simulated time has passed for" if moved_time else "no simulation was started within"
+                )
                 return f"{what} {STALLED_SECONDS:g} s"
             if not is_master_online():
                 return "the ROS master has ended"
@@ -166,28 +186,28 @@ class ProjectRun:
             if not self.observer.has_goal_clients and not record.is_object_picked_up:
                 enough_wall, enough_simulated = NO_CLIENT_WALL_SECONDS, NO_CLIENT_SIMULATED_SECONDS
             return record.all_goals_ended and quiet_wall > enough_wall and quiet_simulated > enough_simulated
-        # A goal may still come: bringing up localization and navigation takes a while on a busy machine.
+        # A goal may still come: starting localization and navigation takes long under load.
         return quiet_wall > FIRST_GOAL_WALL_SECONDS and quiet_simulated > FIRST_GOAL_SIMULATED_SECONDS
 
     def _script_failure(self, code: Optional[int]) -> Optional[str]:
-        """The last words of a script that ended with a code other than 0 before anything had happened."""
+        """Why a script failed before it sent a goal or showed a marker: exit code and last line."""
         if not code or self.observer.record.goals or self.observer.record.markers:
             return None
         lines = (self._logs / "script.log").read_text(errors="replace").split("\n")
-        last_words = next((line.strip() for line in reversed(lines) if line.strip()), "it said nothing")
-        return f"the script ended with exit code {code}: {last_words}"
+        last_line = next((line.strip() for line in reversed(lines) if line.strip()), "without output")
+        return f"the script ended with exit code {code}: {last_line}"
 
-    def _report_waiting_programs(self, own: List[psutil.Process]) -> None:
-        for process in own:
+    def _report_waiting_programs(self, processes: List[psutil.Process]) -> None:
+        for process in processes:
             with contextlib.suppress(psutil.Error, OSError):
                 if process.pid not in self._waiting_for_input and waits_for_input(process):
                     self._waiting_for_input.add(process.pid)
                     name = Path(program_of(process.cmdline())).stem
-                    self._log_event(f"  {name} waits for something to be typed: --type {name}=TEXT")
+                    self._log_event(f"  {name} waits for input: pass --type {name}=TEXT")
 
-    def _log_event(self, news: str) -> None:
+    def _log_event(self, event: str) -> None:
         self._last_event_wall = time.monotonic()
-        self._display.print(news)
+        self._display.print(event)
 
     def _start_helper(self, name: str, command: List[str]) -> None:
         with (self._logs / f"{name}.log").open("w") as log:
@@ -221,7 +241,7 @@ class ProjectRun:
             time.sleep(0.05)
 
     def _project_processes(self) -> List[psutil.Process]:
-        """Processes of programs that are the project's own: neither shells nor tools of ROS."""
+        """Processes of programs in the project's copy: neither shells nor ROS tools."""
         found = []
         for process in psutil.Process().children(recursive=True):
             with contextlib.suppress(psutil.NoSuchProcess):
@@ -232,7 +252,7 @@ class ProjectRun:
 
 
 def _press_enter(script: "subprocess.Popen[bytes]") -> None:
-    """Some scripts wait for a person to press Enter between two windows."""
+    """Send Enter to a script, because some wait for it between two windows."""
     if script.stdin is not None:
         with contextlib.suppress(OSError):
             script.stdin.write(b"\n")
@@ -240,7 +260,7 @@ def _press_enter(script: "subprocess.Popen[bytes]") -> None:
 
 
 def _project_descendants(helpers: List[subprocess.Popen]) -> List[psutil.Process]:
-    """The processes of the run but for the master's and the recorder's."""
+    """All processes of the run except the ROS master and the recorder."""
     own = set()
     for helper in helpers:
         with contextlib.suppress(psutil.NoSuchProcess):

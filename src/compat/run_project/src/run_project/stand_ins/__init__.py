@@ -11,9 +11,9 @@ STAND_INS = PACKAGE_FOLDER / "stand_ins"
 
 
 def without_stand_ins(environment: Mapping[str, str]) -> Dict[str, str]:
-    """The environment of a real program, in which each name means the real thing again.
+    """Environment for a real program, without the folders of the stand-ins.
 
-    rviz, for one, finds its plugins by the package of its name.
+    The real rviz, for example, finds its plugins through the package ``rviz``.
     """
     hidden = {str(STAND_INS), *(str(STAND_INS / part) for part in ("bin", "lib", "share"))}
     return {

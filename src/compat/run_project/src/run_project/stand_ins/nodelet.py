@@ -1,4 +1,4 @@
-"""nodelet for those of a TurtleBot: the simulation does what they do, but for passing velocities on."""
+"""Stand-in for nodelet: a relay instead of the velocity smoother; TurtleBot's others are not needed."""
 
 import os
 import sys
@@ -8,7 +8,7 @@ SMOOTHER = "VelocitySmootherNodelet"
 
 
 def command_for(arguments: List[str]) -> List[str]:
-    """The program that stands in for nodelet called with these arguments."""
+    """Command that replaces ``nodelet`` with these arguments: a topic relay, or a process that sleeps."""
     words = [word for word in arguments if ":=" not in word]
     if not any(word.endswith(SMOOTHER) for word in words):
         return ["sleep", "infinity"]
@@ -26,6 +26,6 @@ def _remapped(remaps: Dict[str, str], node: str, topic: str) -> str:
 
 
 def main() -> None:
-    """Becomes that program."""
+    """Execute the replacing command."""
     command = command_for(sys.argv[1:])
     os.execvp(command[0], command)

@@ -1,11 +1,11 @@
-"""Which topics an rviz configuration displays."""
+"""Topics that an rviz configuration displays."""
 
 from typing import Iterator, Set
 
 import yaml
 
-# Pictures and clouds: heavy to make, and nobody looks at them without a window. Markers: the observer listens
-# to all of them, and must be the first: some nodes show a marker once, as soon as somebody listens.
+# Not subscribed: images and point clouds, because rendering them is expensive, and markers, because the
+# observer must be their first subscriber: some nodes publish a marker once, as soon as they have one.
 EXCLUDED_DISPLAYS = (
     "Image",
     "Camera",
@@ -20,7 +20,11 @@ TOPIC_KEYS = ("Topic", "Marker Topic", "Update Topic")
 
 
 def displayed_topics(text: str) -> Set[str]:
-    """The topics of all enabled displays in the text of a configuration, but for UNSEEN ones."""
+    """Topics of all enabled displays in a configuration, without EXCLUDED_DISPLAYS.
+
+    Args:
+        text: Contents of an ``.rviz`` file; an invalid one has no topics.
+    """
     try:
         config = yaml.safe_load(text.replace("\t", "  "))
     except yaml.YAMLError:

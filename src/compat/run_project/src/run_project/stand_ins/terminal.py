@@ -1,4 +1,4 @@
-"""The terminal emulator without a screen: each window is a process of its own, with a log of its own."""
+"""Stand-in for terminal emulators: each window is a process with a log file."""
 
 import contextlib
 import os
@@ -9,14 +9,14 @@ from typing import Iterator, List
 from run_project.stand_ins.windows import commands_of, returns_at_once, title_of
 
 LOG_FOLDER_VARIABLE = "RUN_PROJECT_LOGS"
-# What is typed into windows: lines of WINDOW=TEXT.
+# Input for windows: lines of WINDOW=TEXT.
 INPUT_VARIABLE = "RUN_PROJECT_TYPED"
-# Logs that lie beside those of the windows.
+# Other logs in the same folder.
 NOT_WINDOWS = ("build", "master", "record", "script")
 
 
 def main(terminal: str, arguments: List[str]) -> None:
-    """Opens the windows that were asked for, and stays as long as the terminal would."""
+    """Open the windows of a terminal's command line, and wait for them if the terminal would."""
     folder = Path(os.environ[LOG_FOLDER_VARIABLE])
     windows = [open_window(command, folder) for command in commands_of(terminal, arguments)]
     if not returns_at_once(terminal):
@@ -26,7 +26,7 @@ def main(terminal: str, arguments: List[str]) -> None:
 
 
 def open_window(command: List[str], folder: Path) -> subprocess.Popen:
-    """Starts a command that outlives whoever asked for it. Its output goes to a file named after it."""
+    """Start the command of a window in a new session; its output goes to ``folder``/TITLE.log."""
     title = title_of(command)
     with _new_file(folder, title) as log, _keyboard(title) as keys:
         log.write((" ".join(command) + "\n").encode("utf-8", "surrogateescape"))
@@ -38,9 +38,11 @@ def open_window(command: List[str], folder: Path) -> subprocess.Popen:
 
 @contextlib.contextmanager
 def _keyboard(title: str) -> Iterator[int]:
-    """What is typed into a window; then nothing more comes, but it does not end, as no keyboard does."""
+    """A pipe with the input for a window; it stays open after the last line, as a keyboard does."""
     reading, writing = os.pipe()
-    both = os.open(f"/proc/self/fd/{reading}", os.O_RDWR)  # who reads from this holds it open for writing
+    both = os.open(
+        f"/proc/self/fd/{reading}", os.O_RDWR
+    )  # opened for writing as well, so that readers get no end of file
     os.close(reading)
     os.close(writing)
     for line in os.environ.get(INPUT_VARIABLE, "").splitlines():
@@ -54,14 +56,14 @@ def _keyboard(title: str) -> Iterator[int]:
 
 
 class WindowLogs:
-    """The logs of the windows in a folder, as they come."""
+    """Finds the logs of new windows in a folder."""
 
     def __init__(self, folder: Path):
         self._folder = folder
         self._known = set(NOT_WINDOWS)
 
     def opened(self) -> List[str]:
-        """The names of the windows that have been opened since the last call."""
+        """Names of the windows opened since the last call."""
         new = sorted({log.stem for log in self._folder.glob("*.log")} - self._known)
         self._known.update(new)
         return new

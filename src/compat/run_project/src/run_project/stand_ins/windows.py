@@ -1,12 +1,11 @@
-"""What a command line of a terminal emulator asks to be run."""
+"""Parser for the command lines of terminal emulators."""
 
 import re
 import shlex
 from pathlib import Path
 from typing import Dict, List, Tuple
 
-# Options of each terminal that take no value; every other one that starts with - or + takes one, unless
-# it is written with =.
+# Options without a value; every other one that starts with - or + takes a value, unless written with =.
 FLAGS: Dict[str, Tuple[str, ...]] = {
     "xterm": tuple(
         "-hold +hold -ls +ls -sb +sb -rv -bc -iconic -maximized -fullscreen -bdc -cm -cr -dc -im -j -mb -nul "
@@ -30,16 +29,21 @@ ALIASES = {
     "konsole": "xterm",
 }
 
-# zsh, many an author's shell, puts the home there as well.
+# zsh expands ~ in this place, bash does not.
 _HOME_AS_VALUE = re.compile(r"(?<=:=)~(?=/)")
-# Commands of one argument that come before what a window is opened for.
+# Commands with one argument that precede the actual command of a window.
 PREPARATORY_COMMANDS = ("source", ".", "cd", "export", "sleep")
 
 
 def commands_of(terminal: str, arguments: List[str]) -> List[List[str]]:
-    """The argument vectors that the windows of ``terminal`` run, one a window.
+    """Commands of the windows that a terminal opens.
 
-    A single string is for bash, as in a terminal whose user has bash for a shell.
+    Args:
+        terminal: Name of the terminal emulator.
+        arguments: Its command line arguments.
+
+    Returns:
+        Argument vector for each window; a command given as one string runs in bash.
     """
     kind = ALIASES.get(terminal, terminal)
     rest = list(arguments)
@@ -58,7 +62,7 @@ def commands_of(terminal: str, arguments: List[str]) -> List[List[str]]:
 
 
 def title_of(command: List[str]) -> str:
-    """A file name that tells what a window runs: ``roslaunch-turtlebot_world`` for example."""
+    """Name for the log of a window by its command, as ``roslaunch-turtlebot_world``."""
     words = [word for part in command for word in _words(part)]
     for at, word in enumerate(words):
         if word in ("roslaunch", "rosrun"):
@@ -71,7 +75,7 @@ def title_of(command: List[str]) -> str:
 
 
 def returns_at_once(terminal: str) -> bool:
-    """Whether the terminal's command ends before its window does: a server keeps the windows."""
+    """Whether the terminal's command returns before its windows close, because a server owns them."""
     return ALIASES.get(terminal, terminal) == "gnome-terminal"
 
 

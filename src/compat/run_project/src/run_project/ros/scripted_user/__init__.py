@@ -1,4 +1,4 @@
-"""What people do with a robot at their keyboard: they place a ball, send it somewhere, drive it about."""
+"""Scripted users: the interaction that course projects need, with checks of the result."""
 
 from run_project.course.launch_plan import CourseProject
 from run_project.ros.scripted_user.ball_chasing import check_ball_chasing

@@ -1,4 +1,4 @@
-"""Go Chase It: a white ball is put before the robot's camera, and taken away."""
+"""Go Chase It: places a white ball in the view of the robot's camera and removes it."""
 
 import math
 from functools import partial
@@ -15,13 +15,13 @@ from planar_ros.messages.conversion import quaternion_of
 if TYPE_CHECKING:
     from run_project.ros.scripted_user.user import ScriptedUser
 
-# Radians to the left of where the robot looks.
+# Bearings of the ball from the robot's heading [rad].
 BEARINGS = (0.0, 0.35, -0.35)
-# Metres to the ball, and from it to what is behind it; share of the way that the robot has to go.
+# Limits of the distance to the ball, clearance behind it [m], and the fraction of the distance to be covered.
 MAX_BALL_DISTANCE, MIN_BALL_DISTANCE, BACKGROUND_CLEARANCE, DISTANCE_FRACTION = 2.0, 0.8, 0.4, 0.5
-# Simulated seconds to chase it, and to stop without it.
+# Simulated time to approach the ball, and to stop without it [s].
 CHASE_SECONDS, STOP_SECONDS = 30.0, 5.0
-# Metres, in a second, below which a robot stands.
+# Displacement in one second below which the robot counts as stopped [m].
 STOPPED_DISTANCE = 0.02
 SERVICE_SECONDS = 30.0
 RADIUS = 0.1
@@ -33,8 +33,8 @@ BALL = f"""<sdf version="1.6"><model name="white_ball"><link name="link"><inerti
 
 
 def check_ball_chasing(user: "ScriptedUser") -> None:
-    """Places the ball ahead, to the left and to the right, and takes it away each time."""
-    user.wait(lambda: user.has_node("process_image"), 120.0, "no process_image ran", is_wall=True)
+    """Check that the robot approaches a ball ahead, to the left and to the right, and stops without it."""
+    user.wait(lambda: user.has_node("process_image"), 120.0, "no node process_image", is_wall=True)
     for service in ("set_model_state", "spawn_sdf_model"):
         rospy.wait_for_service(f"/gazebo/{service}", SERVICE_SECONDS)
     states = rospy.wait_for_message("/gazebo/model_states", ModelStates, SERVICE_SECONDS)
@@ -47,19 +47,19 @@ def check_ball_chasing(user: "ScriptedUser") -> None:
     stops = False
     for bearing in BEARINGS:
         for is_last in (False, True):
-            is_chased, told = _place_ball(user, robot, ball, bearing)
+            is_chased, description = _place_ball(user, robot, ball, bearing)
             stops = _wait_until_stopped(user)
             if is_chased or is_last:
-                user.add_check(is_chased, told)
+                user.add_check(is_chased, description)
                 break
-            user.log(f"{told}, once more")
-    user.add_check(stops, "stands without it" if stops else "goes on without it")
+            user.log(f"{description}; repeated")
+    user.add_check(stops, "stopped without the ball" if stops else "did not stop without the ball")
 
 
 def _place_ball(user: "ScriptedUser", robot: str, ball: str, bearing: float) -> Tuple[bool, str]:
-    """Whether the robot goes for the ball, which is then taken away, and that in words.
+    """Place the ball and remove it; returns whether the robot approached it, and a description.
 
-    Where the machine is busy pictures come late, and a robot turns past the ball.
+    Under load images arrive late and the robot may turn past the ball, so the caller repeats a failure once.
     """
     _turn_towards_free_space(user, robot, bearing)
     distance = max(
@@ -70,8 +70,8 @@ def _place_ball(user: "ScriptedUser", robot: str, ball: str, bearing: float) -> 
     is_chased = user.wait(partial(_is_near, user, at, distance * DISTANCE_FRACTION), CHASE_SECONDS)
     left = user.base.distance_to(at)
     _set_model_pose(ball, Pose2(PARKING_COORDINATE, PARKING_COORDINATE))
-    told = "chased" if is_chased else "did not chase"
-    return is_chased, f"{told} the ball at {math.degrees(bearing):+.0f} deg: {distance:.1f} to {left:.1f} m"
+    result = "chased" if is_chased else "did not chase"
+    return is_chased, f"{result} the ball at {math.degrees(bearing):+.0f} deg: {distance:.1f} to {left:.1f} m"
 
 
 def _is_near(user: "ScriptedUser", place: Pose2, near: float) -> bool:
@@ -79,7 +79,7 @@ def _is_near(user: "ScriptedUser", place: Pose2, near: float) -> bool:
 
 
 def _wait_until_stopped(user: "ScriptedUser") -> bool:
-    """Whether the robot stands still for a second, within a few."""
+    """Whether the robot stops for a second within STOP_SECONDS."""
     deadline = rospy.get_time() + STOP_SECONDS
     while rospy.get_time() < deadline:
         before = user.base
@@ -90,7 +90,7 @@ def _wait_until_stopped(user: "ScriptedUser") -> bool:
 
 
 def _turn_towards_free_space(user: "ScriptedUser", robot: str, bearing: float) -> None:
-    """A robot that stands before a wall is turned by hand, as Gazebo's window lets one do."""
+    """Turn a robot that faces a wall, as a user does in Gazebo's window."""
     if user.free_distance(bearing) < MIN_BALL_DISTANCE + BACKGROUND_CLEARANCE:
         turned = user.base @ Pose2(0.0, 0.0, user.bearing_with_most_space() - bearing)
         _set_model_pose(robot, turned, height=0.05)

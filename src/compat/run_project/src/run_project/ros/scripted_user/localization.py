@@ -1,4 +1,4 @@
-"""Where Am I: the robot is sent to a place in sight and back, or turned, and has to know where it is."""
+"""Where Am I: sends the robot to a visible position and back, or turns it, and checks its pose estimate."""
 
 import math
 from typing import TYPE_CHECKING, List
@@ -16,19 +16,19 @@ from planar_ros.node.listeners import has_all_subscribers
 if TYPE_CHECKING:
     from run_project.ros.scripted_user.user import ScriptedUser
 
-# Metres by which the robot may be wrong; how far it is sent, and the share of what is free.
+# Allowed position error [m]; distance of the goal [m], and its fraction of the free distance.
 MAX_ERROR, MAX_GOAL_DISTANCE, DISTANCE_FRACTION = 0.3, 2.0, 0.6
-# Simulated seconds for a goal, and rad/s to turn round once.
+# Simulated time for a goal [s], and rate of the turn on the spot [rad/s].
 GOAL_SECONDS, TURN_RATE = 120.0, 0.5
 SETTLE_SECONDS = 2.0
 SUCCEEDED = 3
-# Metres and radians without which being localized proves nothing.
+# Motion, in metres plus radians, below which the check would prove nothing.
 MIN_MOTION = 0.5
 
 
 def check_localization(user: "ScriptedUser") -> None:
-    """Sends the robot there and back where it has a move_base, else turns it; looks how far off it is."""
-    user.wait(lambda: user.has_node("amcl"), 120.0, "no amcl ran", is_wall=True)
+    """Check the pose estimate after two goals with move_base, or after a turn on the spot without it."""
+    user.wait(lambda: user.has_node("amcl"), 120.0, "no node amcl", is_wall=True)
     transforms = Transforms()
     frames = (
         rospy.get_param("/amcl/global_frame_id", "map"),
@@ -41,14 +41,14 @@ def check_localization(user: "ScriptedUser") -> None:
         f"no transform from {global_frame} to {base_frame}",
         is_wall=True,
     )
-    begun = transforms.lookup(global_frame, base_frame)
-    assert begun is not None
+    start = transforms.lookup(global_frame, base_frame)
+    assert start is not None
     if user.find_topic("actionlib_msgs/GoalStatusArray"):
         bearing = user.bearing_with_most_space()
         distance = min(MAX_GOAL_DISTANCE, DISTANCE_FRACTION * user.free_distance(bearing))
-        there = begun @ Pose2(distance * math.cos(bearing), distance * math.sin(bearing), bearing)
+        there = start @ Pose2(distance * math.cos(bearing), distance * math.sin(bearing), bearing)
         _send_goal(user, there, global_frame)
-        _send_goal(user, begun, global_frame)
+        _send_goal(user, start, global_frame)
     else:
         since = rospy.get_time()
         while not user.wait(lambda: rospy.get_time() - since > math.tau / TURN_RATE, 0.2):
@@ -57,17 +57,19 @@ def check_localization(user: "ScriptedUser") -> None:
     user.sleep(SETTLE_SECONDS)
     estimate = transforms.lookup(global_frame, base_frame)
     assert estimate is not None
-    off = estimate.distance_to(user.base)
+    error = estimate.distance_to(user.base)
     user.add_check(user.total_motion > MIN_MOTION, f"moved by {user.total_motion:.0f} m and rad")
-    user.add_check(off < MAX_ERROR, f"localized within {off:.2f} m (at most {MAX_ERROR:g} m off)")
+    user.add_check(error < MAX_ERROR, f"localized within {error:.2f} m (at most {MAX_ERROR:g} m)")
 
 
 def _send_goal(user: "ScriptedUser", place: Pose2, frame: str) -> None:
-    """As with rviz's 2D Nav Goal."""
+    """Send a goal as rviz's 2D Nav Goal does, and wait until it ends."""
     results: List[MoveBaseActionResult] = []
     listener = rospy.Subscriber("/move_base/result", MoveBaseActionResult, results.append, queue_size=5)
     goals = rospy.Publisher("/move_base_simple/goal", PoseStamped, queue_size=1)
-    user.wait(lambda: has_all_subscribers(goals), 60.0, "no move_base listened", is_wall=True)
+    user.wait(
+        lambda: has_all_subscribers(goals), 60.0, "no node subscribes to /move_base_simple/goal", is_wall=True
+    )
     goal = PoseStamped()
     goal.header.frame_id, goal.header.stamp, goal.pose = frame, rospy.get_rostime(), pose2_to_msg(place)
     goals.publish(goal)

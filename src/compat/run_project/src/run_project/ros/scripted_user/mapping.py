@@ -1,4 +1,4 @@
-"""Map My World: the robot is driven about, and its map is saved."""
+"""Map My World: drives the robot around and saves its map."""
 
 import math
 import subprocess
@@ -13,15 +13,15 @@ from turtlebot3_gazebo.wandering import Wanderer
 if TYPE_CHECKING:
     from run_project.ros.scripted_user.user import ScriptedUser
 
-# Simulated seconds that it is driven about; square metres that then have to be known as free.
+# Simulated driving time [s], and the required free area of the map [m²].
 DRIVE_SECONDS, MIN_FREE_AREA = 90.0, 4.0
 SIDE = math.radians(30.0)
 SAVE_SECONDS = 60.0
 
 
 def check_mapping(user: "ScriptedUser") -> None:
-    """Drives about by what the laser sees, and saves the map into the run folder."""
-    user.wait(lambda: _map_topic(user) is not None, 120.0, "nobody published a map", is_wall=True)
+    """Check the map after driving around by the laser scan; it is saved into the run folder."""
+    user.wait(lambda: _map_topic(user) is not None, 120.0, "no node publishes a map", is_wall=True)
     wanderer, since = Wanderer(), rospy.get_time()
     while not user.wait(lambda: rospy.get_time() - since > DRIVE_SECONDS, 0.1):
         ahead, left, right = (user.free_distance(bearing) for bearing in (0.0, SIDE, -SIDE))

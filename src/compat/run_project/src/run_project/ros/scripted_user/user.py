@@ -1,4 +1,4 @@
-"""A person at the keyboard: sees the robot's scan and where it truly is, drives it, waits, and tells."""
+"""Scripted user: drives the robot by its scan and true pose, waits, and checks the result."""
 
 import math
 import threading
@@ -17,20 +17,27 @@ from planar_ros.messages.conversion import pose2_from_msg
 from run_project.course.checks import CheckResults
 
 POLL_SECONDS = 0.05
-# Seconds of wall time in which the robot has to be there, and in which so much simulated time has to pass.
+# Wall time for the robot to be spawned [s], and wall time allowed for a simulated second [s].
 BRING_UP_SECONDS = 120.0
 WALL_PER_SIMULATED_SECOND = 20.0
-# Half of the sector, radians, that has to be free to go that way; metres where there is no laser to ask.
+# Half of the sector evaluated for a free distance [rad], and the distance assumed without a laser [m].
 SECTOR = math.radians(15.0)
 DEFAULT_FREE_DISTANCE = 2.0
 
 
 class UserTimeoutError(PlanarError):
-    """What a person waited for did not come; the text says what."""
+    """An expected condition did not occur in time; the text states which."""
 
 
 class ScriptedUser:
-    """Does something with the robot in a thread of its own; ``say`` is told what came of it."""
+    """Runs a procedure with the robot in a thread and collects its checks.
+
+    Attributes:
+        results: Checks of the procedure.
+        folder: Run folder.
+        is_done: Whether the procedure has ended.
+        total_motion: True motion of the robot, metres plus radians.
+    """
 
     def __init__(
         self, procedure: Callable[["ScriptedUser"], None], folder: Path, log_event: Callable[[str], None]
@@ -38,7 +45,6 @@ class ScriptedUser:
         self.results = CheckResults()
         self.folder = folder
         self.is_done = False
-        # Metres and radians that the robot has truly moved.
         self.total_motion = 0.0
         self._log_event = log_event
         self._procedure = procedure
@@ -50,26 +56,27 @@ class ScriptedUser:
         self._thread = threading.Thread(target=self._run, daemon=True)
 
     def start(self) -> None:
-        """This process is a node by then."""
+        """Start the procedure. This process must be a ROS node."""
         rospy.Subscriber("/base_pose_ground_truth", Odometry, self._on_ground_truth, queue_size=5)
         self._thread.start()
 
     def stop(self) -> None:
-        """Gives up whatever is under way."""
+        """Interrupt the procedure."""
         self._is_over.set()
         if self._thread.ident is not None:
             self._thread.join(2.0)
 
-    def log(self, told: str) -> None:
-        """News that decide nothing."""
-        self._log_event(f"{rospy.get_time():7.1f} s  {told}")
+    def log(self, text: str) -> None:
+        """Print an event that is not a check."""
+        self._log_event(f"{rospy.get_time():7.1f} s  {text}")
 
-    def add_check(self, is_good: bool, told: str) -> None:
-        self.log(self.results.add(is_good, told))
+    def add_check(self, passed: bool, description: str) -> None:
+        """Add a check and print it."""
+        self.log(self.results.add(passed, description))
 
     @property
     def base(self) -> Pose2:
-        """Where the robot truly is."""
+        """True pose of the robot in the world."""
         assert self._base is not None
         return self._base
 
@@ -82,28 +89,41 @@ class ScriptedUser:
     def wait(
         self, is_so: Callable[[], bool], seconds: float, otherwise: str = "", is_wall: bool = False
     ) -> bool:
-        """Whether it became so within simulated seconds. Raises GivenUpError if ``otherwise`` is given."""
-        started, patience = (
+        """Wait for a condition.
+
+        Args:
+            is_so: The condition.
+            seconds: Limit of simulated time [s].
+            otherwise: What is missing if the condition does not occur.
+            is_wall: Whether the limit is wall time.
+
+        Returns:
+            Whether the condition occurred.
+
+        Raises:
+            UserTimeoutError: It did not occur and ``otherwise`` is given, or the run was interrupted.
+        """
+        started, wall_limit = (
             rospy.get_time(),
             time.monotonic() + seconds * (1.0 if is_wall else WALL_PER_SIMULATED_SECOND),
         )
         while not is_so():
             if self._is_over.wait(POLL_SECONDS):
                 raise UserTimeoutError("interrupted")
-            is_late = not is_wall and rospy.get_time() - started > seconds
-            if is_late or time.monotonic() > patience:
+            is_over = not is_wall and rospy.get_time() - started > seconds
+            if is_over or time.monotonic() > wall_limit:
                 if otherwise:
                     raise UserTimeoutError(f"{otherwise} within {seconds:g} s")
                 return False
         return True
 
     def sleep(self, seconds: float) -> None:
-        """Lets simulated time pass."""
+        """Wait for simulated time [s]."""
         end = rospy.get_time() + seconds
         self.wait(lambda: rospy.get_time() >= end, seconds + 1.0)
 
     def free_distance(self, bearing: float) -> float:
-        """Metres that are free in that direction, radians from where the robot looks."""
+        """Shortest range around a bearing relative to the robot's heading [rad]; in metres."""
         scan = self._scan
         if scan is None:
             return DEFAULT_FREE_DISTANCE
@@ -115,12 +135,12 @@ class ScriptedUser:
         return min(distances, default=0.0)
 
     def bearing_with_most_space(self) -> float:
-        """The bearing with most room, radians; straight ahead if that is as good."""
+        """Bearing with the longest free distance [rad]; straight ahead if equal."""
         bearings = [0.0, *(sign * math.radians(step) for step in range(10, 180, 10) for sign in (1, -1))]
         return max(bearings, key=lambda bearing: self.free_distance(bearing))
 
     def drive(self, v: float, omega: float) -> None:
-        """Steers with the keyboard."""
+        """Publish a velocity command [m/s, rad/s], as keyboard teleoperation does."""
         if self._velocity_publisher is None:
             topic = self._velocity_topic() or "/cmd_vel"
             self._velocity_publisher = rospy.Publisher(topic, Twist, queue_size=1)
@@ -129,24 +149,24 @@ class ScriptedUser:
         self._velocity_publisher.publish(command)
 
     def find_topic(self, kind: str, without: str = "\0") -> Optional[str]:
-        """A topic of that type that somebody publishes, the one with the shortest name."""
+        """The published topic of a message type with the shortest name; None if there is none."""
         topics = [
             topic for topic, type_ in rospy.get_published_topics() if type_ == kind and without not in topic
         ]
         return min(topics, key=len) if topics else None
 
     def has_node(self, name: str) -> bool:
-        """Whether a node runs whose name holds that."""
+        """Whether a node runs that has ``name`` in its name."""
         return any(name in node for _, nodes in self._state()[1] for node in nodes)
 
     def _velocity_topic(self) -> Optional[str]:
         subscribed = {topic for topic, nodes in self._state()[1] if "/gazebo" in nodes}
-        kinds = dict(rosgraph.Master("/person").getTopicTypes())
+        kinds = dict(rosgraph.Master("/scripted_user").getTopicTypes())
         topics = [topic for topic in subscribed if kinds.get(topic) == "geometry_msgs/Twist"]
         return min(topics, key=len) if topics else None
 
     def _state(self) -> Tuple[List, List, List]:
-        return rosgraph.Master("/person").getSystemState()
+        return rosgraph.Master("/scripted_user").getSystemState()
 
     def _on_ground_truth(self, message: Odometry) -> None:
         base = pose2_from_msg(message.pose.pose)
