@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The node has turtlesim's topics, services, parameters and answers."""
+"""The node has turtlesim's topics, services, parameters and responses."""
 
 import math
 import os
@@ -22,7 +22,7 @@ from visualization_msgs.msg import MarkerArray
 from waiting import PATIENCE_SECONDS
 
 MIDDLE, FLOOR_SIDE = 5.544445, 11.088889
-# So many poses in a row tell their rate.
+# Number of consecutive poses from which the rate is measured.
 POSES = 120
 # Those of the official package.
 MD5_SUMS = {
@@ -37,7 +37,7 @@ MD5_SUMS = {
 
 
 def wait_until(is_so, seconds=PATIENCE_SECONDS):
-    """Whether it has become so in time."""
+    """Whether the condition occurs in time."""
     deadline = time.monotonic() + seconds
     while not is_so():
         if time.monotonic() > deadline:
@@ -71,14 +71,14 @@ class TurtlesimContractTest(unittest.TestCase):
         twist.linear.x, twist.angular.z = forward, turn
         self.cmd_vel.publish(twist)
 
-    def test_a_turtle_is_not_sent_nowhere(self):
+    def test_a_pose_that_is_not_finite_is_rejected(self):
         teleport = rospy.ServiceProxy("/turtle1/teleport_absolute", TeleportAbsolute)
         for x, theta in ((math.nan, 0.0), (math.inf, 0.0), (1.0, math.nan)):
             with self.assertRaisesRegex(rospy.ServiceException, "means nothing"):
                 teleport(x, 1.0, theta)
         self.publish_velocity(forward=math.nan)
         teleport(1.0, 2.0, 0.5)
-        self.assertTrue(wait_until(lambda: abs(self.pose().x - 1.0) < 0.01), "it steps on")
+        self.assertTrue(wait_until(lambda: abs(self.pose().x - 1.0) < 0.01), "the world is still stepped")
 
     def test_messages_have_the_official_md5_sums(self):
         for kind, md5_sum in MD5_SUMS.items():

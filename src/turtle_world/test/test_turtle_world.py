@@ -1,4 +1,4 @@
-"""Turtles move, draw and answer as turtlesim's do."""
+"""Turtles move and draw as turtlesim's do."""
 
 import io
 import math
@@ -16,7 +16,7 @@ MIDDLE = 0.5 * FLOOR_SIDE
 
 
 def run(world, steps, name="turtle1", command=None):
-    """Steps with the command told again and again; the last state."""
+    """Step with the command repeated; returns the last state."""
     for _ in range(steps):
         if command is not None:
             world.command(name, command)
@@ -42,7 +42,7 @@ def turtlesim(steps, command, x=MIDDLE, y=MIDDLE, theta=0.0):
     return x, y, math.remainder(theta, 2.0 * math.pi)
 
 
-def test_a_turtle_waits_in_the_middle():
+def test_a_turtle_starts_in_the_middle():
     world = TurtleWorld()
     assert world.names == ["turtle1"]
     assert world.step()["turtle1"].pose == pytest.approx((MIDDLE, MIDDLE, 0.0))
@@ -68,7 +68,7 @@ def test_a_command_times_out_after_a_second():
 
 
 @pytest.mark.parametrize("theta, edge", [(0.0, (FLOOR_SIDE, MIDDLE)), (-math.pi / 2, (MIDDLE, 0.0))])
-def test_a_wall_stops_a_turtle_at_the_edge_and_it_is_told_where_it_wanted_to(theta, edge):
+def test_a_wall_stops_a_turtle_at_the_edge_and_its_target_is_reported(theta, edge):
     world = TurtleWorld()
     world.teleport("turtle1", MIDDLE, MIDDLE, theta)
     state = run(world, 300, command=TurtleVelocity(2.0))
@@ -92,7 +92,7 @@ def test_turtles_pass_through_each_other():
     assert world.pose_of("other").x == pytest.approx(MIDDLE + 1.0)
 
 
-def test_names_are_made_up_and_taken_once():
+def test_names_are_generated_and_unique():
     world = TurtleWorld()
     assert world.spawn("", 1.0, 2.0, 0.5) == "turtle2"
     assert world.pose_of("turtle2") == pytest.approx((1.0, 2.0, 0.5))
@@ -102,7 +102,7 @@ def test_names_are_made_up_and_taken_once():
 
 
 @pytest.mark.parametrize(
-    "request_something",
+    "command",
     [
         lambda world: world.kill("nobody"),
         lambda world: world.command("nobody", TurtleVelocity()),
@@ -110,12 +110,12 @@ def test_names_are_made_up_and_taken_once():
         lambda world: world.teleport("nobody", 1.0, 1.0, 0.0),
     ],
 )
-def test_an_unknown_turtle_is_an_error(request_something):
+def test_an_unknown_turtle_is_an_error(command):
     with pytest.raises(TurtleError, match="nobody"):
-        request_something(TurtleWorld())
+        command(TurtleWorld())
 
 
-def test_speeds_that_are_not_finite_are_refused_and_the_turtle_stays_whole():
+def test_velocities_that_are_not_finite_are_rejected_and_change_nothing():
     world = TurtleWorld()
     for value in (math.nan, math.inf):
         with pytest.raises(TurtleError, match="finite"):
@@ -146,7 +146,7 @@ def test_a_lifted_pen_draws_nothing():
     assert world.canvas.strokes == []
 
 
-def test_a_way_is_one_stroke_until_the_pen_changes():
+def test_a_path_is_one_stroke_until_the_pen_changes():
     world = TurtleWorld()
     run(world, 50, command=TurtleVelocity(1.0, 0.0, 1.0))
     world.set_pen("turtle1", Pen((1, 2, 3)))
@@ -156,7 +156,7 @@ def test_a_way_is_one_stroke_until_the_pen_changes():
     assert second.points[0] == first.points[-1]
 
 
-def test_a_straight_way_has_two_ends_and_another_for_each_turning_back():
+def test_a_straight_path_has_two_points_and_one_more_for_each_reversal():
     world = TurtleWorld()
     for speed in (1.0, -1.0, 1.0):
         run(world, 50, command=TurtleVelocity(speed))
@@ -174,7 +174,7 @@ def test_a_circle_keeps_its_shape_by_a_pixel_with_a_quarter_of_its_steps():
     assert max(distance_from(stroke.points, *point) for point in truth) < 1.0 / PIXELS_PER_METRE
 
 
-def test_what_is_shown_of_a_long_drawing_is_its_newest_part():
+def test_a_long_drawing_is_limited_to_its_latest_points():
     canvas = Canvas()
     for x in range(10):
         canvas.draw("turtle1", Pen(width=1 + x // 5), (x, x % 2), (x + 1.0, 1.0 - x % 2))
@@ -207,10 +207,10 @@ def test_the_picture_shows_floor_trail_and_turtle():
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, 1e300])
-def test_a_turtle_is_not_put_where_nothing_can_be(value):
-    """Once a place that is not a number ended the thread that steps the world."""
+def test_a_pose_that_is_not_finite_is_rejected(value):
+    """Regression: a pose with NaN ended the thread that steps the world."""
     world = TurtleWorld()
-    for put in (
+    for set_pose in (
         lambda: world.teleport("turtle1", value, 1.0, 0.0),
         lambda: world.teleport("turtle1", 1.0, 1.0, value),
         lambda: world.teleport_by("turtle1", value, 0.0),
@@ -218,6 +218,6 @@ def test_a_turtle_is_not_put_where_nothing_can_be(value):
         lambda: world.spawn("", 1.0, value, 0.0),
     ):
         with pytest.raises(PlanarError, match="means nothing"):
-            put()
+            set_pose()
     assert world.names == ["turtle1"]
     world.step()

@@ -1,4 +1,4 @@
-"""The world of turtlesim on PyBullet, without ROS; the node is in ``turtle_world.ros.node``."""
+"""turtlesim's world on PyBullet, independent of ROS; the node is ``turtle_world.ros.node``."""
 
 from turtle_world.canvas import Pen
 from turtle_world.world import TurtleError, TurtleState, TurtleVelocity, TurtleWorld

@@ -1,4 +1,4 @@
-"""What the turtles draw: the floor as turtlesim's window shows it, and the strokes on it."""
+"""The floor as turtlesim's window shows it, and the strokes that the turtles draw."""
 
 import io
 import math
@@ -10,9 +10,9 @@ from PIL import Image, ImageDraw
 Color = Tuple[int, int, int]
 Point = Tuple[float, float]
 
-# turtlesim's window and the height of its turtle, which is a metre, in pixels.
+# Side of turtlesim's window, and height of its turtle, which is one metre [pixels].
 PIXELS, PIXELS_PER_METRE = 500, 45
-# The side of the floor, metres.
+# Side of the floor [m].
 FLOOR_SIDE = (PIXELS - 1) / PIXELS_PER_METRE
 BACKGROUND: Color = (0x45, 0x56, 0xFF)
 _TURTLE_COLOR: Color = (0x2E, 0x2E, 0x2E)
@@ -20,7 +20,7 @@ _TURTLE_COLOR: Color = (0x2E, 0x2E, 0x2E)
 
 @dataclass(frozen=True)
 class Pen:
-    """``width`` in pixels."""
+    """Pen of a turtle; ``width`` in pixels."""
 
     color: Color = (0xB3, 0xB8, 0xFF)
     width: int = 3
@@ -29,7 +29,13 @@ class Pen:
 
 @dataclass
 class Stroke:
-    """A line drawn without lifting the pen; ``points``: its corners, metres, x to the right, y up."""
+    """A line drawn without lifting the pen.
+
+    Attributes:
+        turtle: Name of the turtle.
+        pen: The pen.
+        points: Corners x, y [m].
+    """
 
     turtle: str
     pen: Pen
@@ -37,9 +43,9 @@ class Stroke:
     _heading: float = 0.0
 
     def extend(self, end: Point) -> None:
-        """Goes on to ``end``: one that lies in a strip of a pixel along the last part lengthens that.
+        """Extend the line to ``end``; within a strip of one pixel the last segment is lengthened instead.
 
-        (The strip of Reumann and Witkam, 1974, so that a line has no more corners than can be seen.)
+        Line simplification by Reumann and Witkam (1974): no more corners than are visible.
         """
         if len(self.points) > 1 and self._is_collinear(end):
             self.points[-1] = end
@@ -49,31 +55,31 @@ class Stroke:
             self.points.append(end)
 
     def _is_collinear(self, end: Point) -> bool:
-        (before, _), (now, aside) = self._from_corner(self.points[-1]), self._from_corner(end)
-        return now >= before and abs(aside) <= 0.5 / PIXELS_PER_METRE
+        (before, _), (now, lateral) = self._from_corner(self.points[-1]), self._from_corner(end)
+        return now >= before and abs(lateral) <= 0.5 / PIXELS_PER_METRE
 
     def _from_corner(self, point: Point) -> Point:
-        """Metres along the last part, and beside it."""
+        """Longitudinal and lateral distance from the last corner along the last segment [m]."""
         x, y = point[0] - self.points[-2][0], point[1] - self.points[-2][1]
         c, s = math.cos(self._heading), math.sin(self._heading)
         return c * x + s * y, c * y - s * x
 
 
 class Canvas:
-    """The floor, of the color ``background``; ``strokes`` are all lines on it, older ones first."""
+    """The floor with its background colour and strokes, in the order of drawing."""
 
     def __init__(self, background: Color = BACKGROUND):
         self.clear(background)
 
     def clear(self, background: Color) -> None:
-        """Wipes everything."""
+        """Remove all strokes and set the background colour."""
         self.background = background
         self.strokes: List[Stroke] = []
         self._image = Image.new("RGB", (PIXELS, PIXELS), background)
         self._draw = ImageDraw.Draw(self._image)
 
     def draw(self, turtle: str, pen: Pen, start: Point, end: Point) -> None:
-        """Draws a line; one that goes on where the turtle's last one ended lengthens that."""
+        """Draw a line [m]; extends the turtle's last stroke if it starts at its end."""
         self._draw.line((*_pixel(*start), *_pixel(*end)), pen.color, pen.width)
         last = next((stroke for stroke in reversed(self.strokes) if stroke.turtle == turtle), None)
         if last is None or last.pen != pen or last.points[-1] != start:
@@ -82,7 +88,7 @@ class Canvas:
         last.extend(end)
 
     def latest_strokes(self, max_points: int) -> List[Stroke]:
-        """Those drawn last, that have so many points together; of the oldest of them its end."""
+        """The latest strokes with ``max_points`` points in total; the oldest of them is truncated."""
         shown: List[Stroke] = []
         for stroke in reversed(self.strokes):
             if max_points < 2:
@@ -92,24 +98,24 @@ class Canvas:
         return shown[::-1]
 
     def color_at(self, x: float, y: float) -> Color:
-        """The colour under a place, metres."""
+        """Colour of the floor at a position [m]."""
         col, row = _pixel(x, y)
         return cast(Color, self._image.getpixel((round(col), round(row))))
 
     def picture(self, poses: Iterable[Tuple[float, float, float]]) -> bytes:
-        """A PNG of the floor with turtles at these poses: x, y, theta."""
+        """Render the floor with turtles at poses x, y, theta [m, rad]; returns a PNG."""
         image = self._image.copy()
         draw, radius = ImageDraw.Draw(image), 0.4 * PIXELS_PER_METRE
         for x, y, theta in poses:
             col, row = _pixel(x, y)
-            nose = (col + radius * math.cos(theta), row - radius * math.sin(theta))
+            tip = (col + radius * math.cos(theta), row - radius * math.sin(theta))
             draw.ellipse((col - radius, row - radius, col + radius, row + radius), _TURTLE_COLOR)
-            draw.line((col, row, *nose), (255, 255, 255), 3)
+            draw.line((col, row, *tip), (255, 255, 255), 3)
         buffer = io.BytesIO()
         image.save(buffer, "PNG")
         return buffer.getvalue()
 
 
 def _pixel(x: float, y: float) -> Tuple[float, float]:
-    """Column and row of a place in metres."""
+    """Column and row of a position [m]."""
     return x * PIXELS_PER_METRE, (FLOOR_SIDE - y) * PIXELS_PER_METRE

@@ -1,4 +1,4 @@
-"""The turtles' bodies in PyBullet: round robots the size of a TurtleBot between four walls."""
+"""Turtles as PyBullet bodies: round robots the size of a TurtleBot between four walls."""
 
 import math
 from typing import NamedTuple
@@ -6,17 +6,17 @@ from typing import NamedTuple
 from sim_bridge.physics.bullet import BulletClient, pybullet
 from turtle_world.canvas import FLOOR_SIDE
 
-# turtlesim's timer, seconds.
+# Period of turtlesim's timer [s].
 PERIOD = 0.016
-# Of a TurtleBot 2: metres and kilograms.
+# Of a TurtleBot 2 [m, m, kg].
 RADIUS, HEIGHT, MASS = 0.177, 0.42, 6.3
-# Half the thickness of a wall, metres: nothing gets through it in one period.
+# Half the thickness of a wall [m]: no body passes through it in one period.
 WALL = 1.0
 TURTLE_GROUP, WALL_GROUP = 1, 2
 
 
 class TurtlePose(NamedTuple):
-    """Metres and radians."""
+    """Pose on the floor [m, m, rad]."""
 
     x: float
     y: float
@@ -24,9 +24,9 @@ class TurtlePose(NamedTuple):
 
 
 class TurtlePhysics:
-    """Bodies that slide over the floor as they are told, through each other but not through the walls.
+    """Bodies that slide over the floor at commanded velocities and collide with walls, not with each other.
 
-    As in turtlesim, the centre of a body comes as far as the edge of the floor: the walls stand back.
+    As in turtlesim, the centre of a body reaches the edge of the floor: the walls are set back by its radius.
     """
 
     def __init__(self):
@@ -40,9 +40,9 @@ class TurtlePhysics:
             self._add(0.0, box, middle + along_x * reach, middle + along_y * reach, WALL_GROUP, TURTLE_GROUP)
 
     def add(self, pose: TurtlePose) -> int:
-        """A new body at a place on the floor; returns its number."""
+        """Add a body; returns its id in PyBullet."""
         number = self._add(MASS, self._shape, pose.x, pose.y, TURTLE_GROUP, WALL_GROUP)
-        # It turns about its own axis only, and nothing brakes it.
+        # It rotates about the vertical axis only, without damping.
         spin_inertia = 0.5 * MASS * RADIUS**2
         self._bullet.changeDynamics(
             number,
@@ -60,16 +60,16 @@ class TurtlePhysics:
         self._bullet.removeBody(number)
 
     def set_pose(self, number: int, pose: TurtlePose) -> None:
-        """Puts a body somewhere else."""
+        """Set the pose of a body."""
         turned = (0.0, 0.0, math.sin(0.5 * pose.theta), math.cos(0.5 * pose.theta))
         self._bullet.resetBasePositionAndOrientation(number, (pose.x, pose.y, 0.0), turned)
 
     def set_velocity(self, number: int, velocity_x: float, velocity_y: float, turn: float) -> None:
-        """Sets the speeds of a body for the next step: m/s in the world, and rad/s."""
+        """Set the velocity of a body for the next step: m/s in the world frame, and rad/s."""
         self._bullet.resetBaseVelocity(number, (velocity_x, velocity_y, 0.0), (0.0, 0.0, turn))
 
     def step(self) -> None:
-        """Moves on by one period."""
+        """Advance by one period."""
         self._bullet.stepSimulation()
 
     def pose_of(self, number: int) -> TurtlePose:

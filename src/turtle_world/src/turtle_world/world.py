@@ -1,4 +1,4 @@
-"""The facade: turtles that are told to move, and what they draw."""
+"""The facade: a world of turtles that execute velocity commands and draw."""
 
 import math
 from dataclasses import dataclass
@@ -9,33 +9,44 @@ from planar.geometry.limits import MAX_ANGLE, MAX_COORDINATE, MAX_SPEED, check_w
 from turtle_world.canvas import BACKGROUND, FLOOR_SIDE, Canvas, Color, Pen
 from turtle_world.physics import PERIOD, TurtlePhysics, TurtlePose
 
-# A command holds for this long, seconds.
+# Time-out of a velocity command [s].
 COMMAND_SECONDS = 1.0
 FIRST_NAME = "turtle1"
 
 
 class TurtleError(PlanarError):
-    """There is no such turtle, or there is one already."""
+    """The turtle does not exist, exists already, or the command is invalid."""
 
 
 @dataclass(frozen=True)
 class TurtleVelocity:
-    """Speeds as in cmd_vel: forward and to the left in m/s, to the left in rad/s."""
+    """Velocity command in the turtle's frame.
+
+    Attributes:
+        forward: Along x [m/s].
+        leftward: Along y [m/s].
+        turn: About z, counterclockwise [rad/s].
+    """
 
     forward: float = 0.0
     leftward: float = 0.0
     turn: float = 0.0
 
     def is_in_range(self) -> bool:
-        """Whether it is finite, and no faster than anything moves."""
+        """Whether all components are finite and at most MAX_SPEED."""
         return is_within(MAX_SPEED, self.forward, self.leftward, self.turn)
 
 
 @dataclass(frozen=True)
 class TurtleState:
-    """After a step: where a turtle is and how fast it is told to be, and the colour of the floor under it.
+    """State of a turtle after a step.
 
-    ``stopped_at``: where it would have got to, had there been no wall; None if none was in its way.
+    Attributes:
+        pose: Pose in the world.
+        speed: Commanded linear speed [m/s].
+        turn: Commanded angular velocity [rad/s].
+        color: Colour of the floor below the turtle.
+        blocked_target: Position x, y that it would have reached without a wall [m]; else None.
     """
 
     pose: TurtlePose
@@ -54,9 +65,10 @@ class _Turtle:
 
 
 class TurtleWorld:
-    """turtlesim's world: its floor, its turtle in the middle, its time-out of commands.
+    """turtlesim's world on a physics engine: one turtle in the middle of the floor, commands with a time-out.
 
-    Turtles have bodies in a physics engine. ``step`` moves on by one period, 16 ms.
+    Attributes:
+        canvas: The floor with the turtles' strokes.
     """
 
     def __init__(self):
@@ -71,9 +83,20 @@ class TurtleWorld:
         return list(self._turtles)
 
     def spawn(self, name: str, x: float, y: float, theta: float) -> str:
-        """A new turtle; returns its name, which is made up if ``name`` is empty.
+        """Add a turtle; a pose beyond the floor is clamped to its edge.
 
-        Raises TurtleError, or OutOfRangeError for a place that means nothing, as all that moves turtles.
+        Args:
+            name: Its name; if empty, the next free ``turtleN``.
+            x: Position [m].
+            y: Position [m].
+            theta: Heading [rad].
+
+        Returns:
+            The name of the turtle.
+
+        Raises:
+            TurtleError: A turtle of this name exists.
+            OutOfRangeError: The pose is not finite or out of range.
         """
         pose = _clamp_to_floor(TurtlePose(x, y, theta))
         if name in self._turtles:
@@ -85,12 +108,12 @@ class TurtleWorld:
         return name
 
     def kill(self, name: str) -> None:
-        """Removes a turtle; what it has drawn stays. Raises TurtleError."""
+        """Remove a turtle; its strokes remain. Raises TurtleError."""
         self._physics.remove(self._turtle(name).body)
         del self._turtles[name]
 
     def reset(self, background: Color) -> None:
-        """Back to one turtle in the middle of an empty floor."""
+        """Restore the initial state: one turtle in the middle of an empty floor."""
         for name in self.names:
             self.kill(name)
         self._generated_names = 0
@@ -98,39 +121,46 @@ class TurtleWorld:
         self.spawn("", 0.5 * FLOOR_SIDE, 0.5 * FLOOR_SIDE, 0.0)
 
     def command(self, name: str, command: TurtleVelocity) -> None:
-        """Tells a turtle how to move from now on, until the command's time-out. Raises TurtleError."""
+        """Set the velocity of a turtle until the time-out. Raises TurtleError."""
         if not command.is_in_range():
-            raise TurtleError(f"[{name}] is told to move at a speed that is not finite, or no speed")
+            raise TurtleError(
+                f"[{name}] velocity command is not finite, or exceeds {MAX_SPEED:g} m/s or rad/s: ignored"
+            )
         turtle = self._turtle(name)
         turtle.command, turtle.steps_left = command, round(COMMAND_SECONDS / PERIOD)
 
     def set_pen(self, name: str, pen: Pen) -> None:
-        """Raises TurtleError."""
+        """Set the pen of a turtle. Raises TurtleError."""
         self._turtle(name).pen = pen
 
     def pen_of(self, name: str) -> Pen:
-        """Raises TurtleError."""
+        """The pen of a turtle. Raises TurtleError."""
         return self._turtle(name).pen
 
     def pose_of(self, name: str) -> TurtlePose:
-        """Raises TurtleError."""
+        """The pose of a turtle. Raises TurtleError."""
         return self._physics.pose_of(self._turtle(name).body)
 
     def teleport(self, name: str, x: float, y: float, theta: float) -> None:
-        """Moves a turtle at once, drawing a line if its pen is on. Raises TurtleError."""
+        """Set the pose of a turtle, drawing a line if its pen is on.
+
+        Raises:
+            TurtleError: There is no such turtle.
+            OutOfRangeError: The pose is not finite or out of range.
+        """
         start, end = self.pose_of(name), _clamp_to_floor(TurtlePose(x, y, theta))
         self._physics.set_pose(self._turtle(name).body, end)
         self._draw(name, start)
 
     def teleport_by(self, name: str, distance: float, angle: float) -> None:
-        """Turns a turtle, then moves it ahead, at once. Raises TurtleError."""
+        """Rotate a turtle [rad], then move it ahead [m]; raises as ``teleport``."""
         pose = self.pose_of(name)
         check_within(MAX_ANGLE, "a turtle's turn", angle=angle)
         theta = pose.theta + angle
         self.teleport(name, pose.x + distance * math.cos(theta), pose.y + distance * math.sin(theta), theta)
 
     def step(self) -> Dict[str, TurtleState]:
-        """Moves on by one period; returns what has become of each turtle."""
+        """Advance by one period of 16 ms; returns the state of each turtle by name."""
         starts, targets = {}, {}
         for name, turtle in self._turtles.items():
             starts[name] = start = self._physics.pose_of(turtle.body)
@@ -139,16 +169,16 @@ class TurtleWorld:
         return {name: self._state(name, starts[name], targets[name]) for name in self._turtles}
 
     def picture(self) -> bytes:
-        """A PNG of the floor and the turtles."""
+        """Render the floor and the turtles; returns a PNG."""
         return self.canvas.picture([self.pose_of(name) for name in self._turtles])
 
     def _turtle(self, name: str) -> _Turtle:
         if name not in self._turtles:
-            raise TurtleError(f"there is no turtle [{name}]")
+            raise TurtleError(f"there is no turtle named [{name}]")
         return self._turtles[name]
 
     def _apply_command(self, turtle: _Turtle, start: TurtlePose) -> Tuple[float, float]:
-        """Sets a body in motion; returns where it wants to."""
+        """Set the velocity of a body; returns the position that it reaches without walls."""
         if turtle.steps_left == 0:
             turtle.command = TurtleVelocity()
         turtle.steps_left = max(0, turtle.steps_left - 1)

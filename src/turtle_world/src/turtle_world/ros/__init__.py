@@ -1,1 +1,1 @@
-"""The parts of the node ``turtle_world`` that speak ROS."""
+"""The nodes of turtle_world."""

@@ -1,4 +1,4 @@
-"""The turtles, their floor and their strokes for rviz and the cockpit, in the frame world."""
+"""Markers of turtles, floor and strokes for rviz and the cockpit, in the frame ``world``."""
 
 import math
 
@@ -13,15 +13,15 @@ from turtle_world.world import TurtleWorld
 
 FRAME = "world"
 BODY_COLOR: Color = (0x2E, 0x2E, 0x2E)
-# Strokes lie a little above the floor.
+# Height of strokes above the floor [m].
 STROKE_HEIGHT = 0.01
 FLOOR_THICKNESS = 0.02
-# Of all strokes, so that who draws for hours does not fill up the network; the picture has all.
+# Limit for all strokes together, to bound the message size; the image contains all of them.
 MAX_POINTS = 5000
 
 
 class TurtleMarkers:
-    """Publishes all that is to be seen, if anybody looks."""
+    """Publishes the markers while there are subscribers."""
 
     def __init__(self):
         self._publisher = rospy.Publisher("~markers", MarkerArray, queue_size=1)
@@ -29,13 +29,13 @@ class TurtleMarkers:
     def publish(self, world: TurtleWorld) -> None:
         if self._publisher.get_num_connections() == 0:
             return
-        everything = [Marker(action=Marker.DELETEALL), _floor(world.canvas.background)]
+        markers = [Marker(action=Marker.DELETEALL), _floor(world.canvas.background)]
         for number, name in enumerate(world.names):
-            everything += [_body(number, world.pose_of(name)), _heading_arrow(number, world.pose_of(name))]
-        everything += [
+            markers += [_body(number, world.pose_of(name)), _heading_arrow(number, world.pose_of(name))]
+        markers += [
             _line(number, stroke) for number, stroke in enumerate(world.canvas.latest_strokes(MAX_POINTS))
         ]
-        self._publisher.publish(everything)
+        self._publisher.publish(markers)
 
 
 def _floor(color):

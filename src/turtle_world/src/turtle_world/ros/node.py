@@ -22,14 +22,14 @@ from turtle_world.ros.turtle_topics import TurtleTopics
 from turtle_world.world import TurtleWorld
 
 BACKGROUND_PARAMETERS = ("~background_r", "~background_g", "~background_b")
-# A node that comes late, because others had the processor, makes up for so much, seconds.
+# Delay that the node makes up for when it was not scheduled in time [s].
 MAX_DELAY = 0.5
-# How often the picture is written, and the markers are shown, seconds.
+# Periods of writing the image and of publishing the markers [s].
 PICTURE_PERIOD, MARKERS_PERIOD = 1.0, 0.1
 
 
 class TurtleWorldNode:
-    """One lock guards the world; a thread moves it on at turtlesim's pace."""
+    """Steps the world at turtlesim's rate in a thread; one lock guards the world."""
 
     def __init__(self, picture: str):
         self._picture = picture
@@ -68,10 +68,10 @@ class TurtleWorldNode:
                 try:
                     self._write_picture()
                 except FileWriteError as error:
-                    rospy.logerr_throttle(60.0, f"no picture: {error}")
+                    rospy.logerr_throttle(60.0, f"cannot write the image: {error}")
 
     def _update_turtle_topics(self):
-        """Gives each turtle its topics and services, and takes away those of turtles that are gone."""
+        """Advertise topics and services of new turtles, and close those of removed ones."""
         for name in set(self._topics) - set(self._world.names):
             self._topics.pop(name).close()
         for name in self._world.names:
@@ -129,7 +129,7 @@ def main(node_name: str):
         prog=f"{node_name}_node", description="turtlesim's world, without a window."
     )
     parser.add_argument(
-        "--picture", metavar="PNG", default="", help="where to keep what turtlesim's window would show"
+        "--picture", metavar="PNG", default="", help="file for the image that turtlesim's window would show"
     )
     arguments = parser.parse_args(rospy.myargv()[1:])
     run(node_name, lambda: TurtleWorldNode(arguments.picture))

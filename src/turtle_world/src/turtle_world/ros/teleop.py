@@ -9,7 +9,7 @@ from planar import PlanarError
 from planar_ros.node.shell import run
 from teleop_lite.terminal import CTRL_C, Terminal
 
-# How the arrow keys end, as terminals send them: shares of full speed ahead and to the left.
+# Last character of an arrow key's escape sequence -> fractions of the linear and angular scale.
 ARROWS = {"A": (1.0, 0.0), "B": (-1.0, 0.0), "C": (0.0, -1.0), "D": (0.0, 1.0)}
 QUIT = ("q", CTRL_C)
 POLL_SECONDS = 0.2
@@ -44,7 +44,7 @@ def _drive(terminal):
 
 
 def _arrows_in(keys: str):
-    """The arrows among keys: each is an escape, a bracket or an O, and a letter."""
+    """Parse the escape sequences of arrow keys: ESC, ``[`` or ``O``, and a letter."""
     for sequence in keys.split("\x1b")[1:]:
         if sequence[:1] in ("[", "O") and sequence[1:2] in ARROWS:
             yield ARROWS[sequence[1:2]]

@@ -1,4 +1,4 @@
-"""The nodes of turtle_tf and turtle_tf2: where a turtle is, and one that follows another by tf."""
+"""The nodes of turtle_tf and turtle_tf2: broadcast a turtle's pose, and follow a turtle by tf."""
 
 import math
 
@@ -13,25 +13,27 @@ from planar_ros.node.shell import run
 
 LEADER, FOLLOWER = "turtle1", "turtle2"
 SPAWN_POSE = (4.0, 2.0, 0.0)  # x (m), y (m), theta (rad)
-# Speeds by how far away the leader is (1/s) and by the angle to it (1/s).
+# Gains from distance to linear velocity and from bearing to angular velocity [1/s].
 LINEAR_GAIN, ANGULAR_GAIN = 0.5, 4.0
 SERVICE_SECONDS = 30.0
 
 
 def broadcast() -> None:
-    """The node that tells where the turtle of its parameter ``~turtle`` is in ``world``."""
+    """Node that broadcasts the pose of the turtle in parameter ``~turtle`` as a transform from ``world``."""
     run("turtle_tf_broadcaster", _broadcast)
 
 
 def follow() -> None:
-    """The node that spawns a turtle, the parameter ``turtle``, and makes it follow turtle1."""
+    """Node that spawns the turtle in parameter ``turtle`` and makes it follow turtle1."""
     run("turtle_tf_listener", _follow)
 
 
 def _broadcast():
     turtle = rospy.get_param("~turtle", None)
     if not turtle:
-        raise PlanarError(f"whose pose to tell is not set: {rospy.resolve_name('~turtle')}, as turtle1")
+        raise PlanarError(
+            f"parameter {rospy.resolve_name('~turtle')} is not set: expected the name of a turtle, as turtle1"
+        )
     broadcaster = tf2_ros.TransformBroadcaster()
     rospy.Subscriber(
         f"/{turtle}/pose", Pose, lambda pose: broadcaster.sendTransform(_transform(turtle, pose))
@@ -52,19 +54,19 @@ def _transform(turtle: str, pose: Pose) -> TransformStamped:
 def _follow():
     follower = rospy.get_param("turtle", FOLLOWER)
     buffer = tf2_ros.Buffer()
-    listener = tf2_ros.TransformListener(buffer)  # noqa: F841 -- listens as long as it lives
+    listener = tf2_ros.TransformListener(buffer)  # noqa: F841 -- keeps the subscription
     _spawn(follower)
     publisher = rospy.Publisher(f"{follower}/cmd_vel", Twist, queue_size=1)
     rate = rospy.Rate(10.0)
     while not rospy.is_shutdown():
         rate.sleep()
         try:
-            seen = buffer.lookup_transform(follower, LEADER, rospy.Time()).transform.translation
+            leader = buffer.lookup_transform(follower, LEADER, rospy.Time()).transform.translation
         except tf2_ros.TransformException:
-            continue  # one of them has not told yet where it is
+            continue  # no transform of one of them yet
         twist = Twist()
-        twist.linear.x = LINEAR_GAIN * math.hypot(seen.x, seen.y)
-        twist.angular.z = ANGULAR_GAIN * math.atan2(seen.y, seen.x)
+        twist.linear.x = LINEAR_GAIN * math.hypot(leader.x, leader.y)
+        twist.angular.z = ANGULAR_GAIN * math.atan2(leader.y, leader.x)
         publisher.publish(twist)
 
 
@@ -75,6 +77,6 @@ def _spawn(turtle: str) -> None:
     except rospy.ROSInterruptException:
         raise
     except rospy.ROSException as error:
-        raise PlanarError(f"nobody spawns turtles, is turtlesim_node running? {error}") from None
+        raise PlanarError(f"the service spawn is not available, is turtlesim_node running? {error}") from None
     except rospy.ServiceException:
-        rospy.loginfo("there is a %s already", turtle)
+        rospy.loginfo("%s exists already", turtle)

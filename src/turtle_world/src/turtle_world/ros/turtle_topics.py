@@ -1,4 +1,4 @@
-"""The topics and services of one turtle, below its name."""
+"""Topics and services of one turtle, in the namespace of its name."""
 
 import threading
 
@@ -22,7 +22,7 @@ WARNING_SECONDS = 1.0
 
 
 class TurtleTopics:
-    """Hands commands and requests to the world, and publishes what the world says about the turtle."""
+    """Passes commands and requests to the world, and publishes the state of the turtle."""
 
     def __init__(self, name: str, world: TurtleWorld, lock: threading.RLock):
         self._name, self._world, self._lock = name, world, lock
@@ -45,11 +45,11 @@ class TurtleTopics:
             )
 
     def close(self) -> None:
-        """Takes everything away, as the turtle is no more."""
+        """Unregister all topics and services of a removed turtle."""
         for topic in (self._subscriber, self._pose, self._color):
             topic.unregister()
         for service in self._services:
-            service.shutdown("the turtle is no more")
+            service.shutdown("the turtle has been removed")
 
     def _on_command(self, message):
         command = TurtleVelocity(message.linear.x, message.linear.y, message.angular.z)
