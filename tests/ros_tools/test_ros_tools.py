@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tools of ROS that people type: under Debian's names, and they end."""
+"""ROS command line tools are available under their names, and they terminate."""
 
 import os
 import subprocess
@@ -34,30 +34,30 @@ class RosToolsTest(unittest.TestCase):
             self.assertIn("odom", Path(folder, "frames.gv").read_text())
             self.assertTrue(Path(folder, "frames.pdf").read_bytes().startswith(b"%PDF"))
 
-    def test_dynparam_ends_where_there_is_no_server(self):
+    def test_dynparam_ends_without_a_server(self):
         run = rosrun("dynamic_reconfigure", "dynparam", "get", "/nobody")
         self.assertEqual(run.returncode, 1, run.stdout)
         self.assertIn("/nobody", run.stdout)
 
-    def test_dynparam_ends_where_there_is_no_master(self):
+    def test_dynparam_ends_without_a_master(self):
         with mock.patch.dict(os.environ, ROS_MASTER_URI="http://127.0.0.1:1"):
             run = rosrun("dynamic_reconfigure", "dynparam", "list")
         self.assertEqual(run.returncode, 1, run.stdout)
         self.assertIn("no ROS master at http://127.0.0.1:1", run.stdout)
 
-    def test_the_other_tools_of_a_mended_package_are_found(self):
+    def test_the_other_tools_of_a_fixed_package_are_found(self):
         self.assertIn("tf_echo", rosrun("tf", "tf_echo").stdout)
 
-    def test_launch_files_find_the_tools_for_topics(self):
+    def test_roslaunch_finds_topic_tools(self):
         for name in ("relay", "mux", "throttle"):
             self.assertTrue(roslib.packages.find_node("topic_tools", name), name)
 
-    def test_robot_state_publisher_answers_to_its_former_name_too(self):
+    def test_robot_state_publisher_has_its_former_name_too(self):
         found = [roslib.packages.find_node("robot_state_publisher", name) for name in PUBLISHERS]
         self.assertEqual([Path(nodes[0]).name for nodes in found if nodes], list(PUBLISHERS))
         self.assertEqual(len({os.path.realpath(nodes[0]) for nodes in found}), 1)
 
-    def test_a_robot_of_ones_own_can_stand_on_the_turtlebot_s_macros(self):
+    def test_a_custom_robot_can_use_the_turtlebots_macros(self):
         parts = "".join(
             f'<xacro:include filename="$(find {package})/urdf/{name}.urdf.xacro"/>'
             for package, name in (
@@ -81,7 +81,7 @@ class RosToolsTest(unittest.TestCase):
         for link in ("base_footprint", "wheel_left_link", "plate_top_link", "camera_depth_optical_frame"):
             self.assertIn(f'<link name="{link}"', run.stdout)
 
-    def test_xacro_goes_on_where_the_order_of_former_times_is_asked_for(self):
+    def test_xacro_accepts_the_options_for_the_former_order(self):
         with tempfile.TemporaryDirectory() as folder:
             robot = Path(folder, "robot.xacro")
             robot.write_text('<robot name="robot"/>')

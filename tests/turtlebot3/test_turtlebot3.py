@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""ROBOTIS' simulation chapter: the robot in its hall, localized and sent about by the official names."""
+"""ROBOTIS' simulation chapter: the robot in turtlebot3_world, with the official names."""
 
 import os
 import pty
@@ -33,11 +33,11 @@ MD5 = {
 
 
 class TurtleBot3Test(unittest.TestCase):
-    def test_1_its_messages_are_the_official_ones(self):
+    def test_1_the_messages_are_the_official_ones(self):
         for message, md5 in MD5.items():
             self.assertEqual(message._md5sum, md5, message._type)
 
-    def test_2_its_topics_tell_what_the_official_ones_do(self):
+    def test_2_the_topics_match_the_official_ones(self):
         scan = rospy.wait_for_message("scan", LaserScan, BRING_UP_SECONDS)
         self.assertEqual((len(scan.ranges), scan.header.frame_id), (360, "base_scan"))
         self.assertAlmostEqual(scan.range_max, 3.5, places=5)
@@ -54,7 +54,7 @@ class TurtleBot3Test(unittest.TestCase):
         self.assertEqual(rospy.wait_for_message("imu", Imu, PATIENCE_SECONDS).header.frame_id, "imu_link")
         self.assertLess(self._truth().distance_to(START), 0.05)
 
-    def test_3_it_is_told_where_it_is_and_drives_to_a_goal(self):
+    def test_3_it_drives_to_a_goal_after_an_initial_pose(self):
         publisher = rospy.Publisher("initialpose", PoseWithCovarianceStamped, queue_size=1, latch=True)
         pose = PoseWithCovarianceStamped()
         pose.header.frame_id, pose.pose.pose = "map", pose2_to_msg(START)
@@ -62,7 +62,7 @@ class TurtleBot3Test(unittest.TestCase):
         pose.pose.covariance[35] = 0.07
         publisher.publish(pose)
         wait_until(
-            "the localization to believe it",
+            "the estimate to follow the initial pose",
             lambda: self._estimate().distance_to(START) < 0.3,
             BRING_UP_SECONDS,
         )
@@ -72,10 +72,10 @@ class TurtleBot3Test(unittest.TestCase):
         goal.target_pose.header.frame_id, goal.target_pose.pose = "map", pose2_to_msg(GOAL)
         self.assertEqual(client.send_goal_and_wait(goal, rospy.Duration(200.0)), 3)
         error = self._truth().distance_to(GOAL)
-        print(f"the robot truly stands {error:.3f} m from its goal")
+        print(f"true distance from the goal: {error:.3f} m")
         self.assertLess(error, 0.25)
 
-    def test_4_who_draws_at_its_marker_draws_it_along(self):
+    def test_4_the_interactive_marker_drives_the_robot(self):
         full = "/turtlebot3_marker_server/update_full"
         (marker,) = rospy.wait_for_message(full, InteractiveMarkerInit, PATIENCE_SECONDS).markers
         self.assertEqual({one.name for one in marker.controls}, {"move_x", "rotate_z"})
@@ -90,17 +90,17 @@ class TurtleBot3Test(unittest.TestCase):
         drawn.header.frame_id = marker.header.frame_id
         commands = []
         rospy.Subscriber("cmd_vel", Twist, lambda twist: commands.append((twist.linear.x, twist.angular.z)))
-        wait_until("somebody to hear of it", lambda: has_all_subscribers(feedback), PATIENCE_SECONDS)
+        wait_until("the subscriber of the feedback", lambda: has_all_subscribers(feedback), PATIENCE_SECONDS)
         before = self._truth()
 
-        def has_gone():
+        def has_moved():
             feedback.publish(drawn)
             return self._truth().distance_to(before) > 0.1
 
-        wait_until("the robot to come along", has_gone, PATIENCE_SECONDS)
+        wait_until("the robot to move", has_moved, PATIENCE_SECONDS)
         self.assertIn((0.1, 0.44), [(round(v, 6), round(omega, 6)) for v, omega in commands])
 
-    def test_5_who_waits_for_what_is_typed_ends_when_asked_to(self):
+    def test_5_programs_that_wait_for_input_end_on_sigint(self):
         for command in ("turtlebot3_client", "turtlebot3_pointop_key"):
             keyboard, terminal = pty.openpty()
             waiting = subprocess.Popen(

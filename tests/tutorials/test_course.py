@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The nodes of the course do what their lessons say."""
+"""The nodes of the ROS course work as its lessons describe."""
 
 import contextlib
 import os
@@ -23,7 +23,7 @@ RADIUS = 0.5 / 0.2  # metres: of the circle that turtle_velocity_publisher drive
 
 @contextlib.contextmanager
 def running(package, node, *arguments):
-    """A node while it runs; yields a function that returns what it has printed so far."""
+    """Run a node; yields a function that returns its output until then."""
     with tempfile.TemporaryFile() as output:
         process = subprocess.Popen(
             ["rosrun", package, node, *arguments], stdout=output, stderr=subprocess.STDOUT
@@ -41,7 +41,7 @@ def running(package, node, *arguments):
 
 
 def run(package, node, *arguments):
-    """Exit code and output of a node that ends by itself."""
+    """Exit code and output of a node that terminates."""
     done = subprocess.run(
         ["rosrun", package, node, *arguments],
         stdout=subprocess.PIPE,
@@ -53,7 +53,7 @@ def run(package, node, *arguments):
 
 
 def nodes_launched_by(package):
-    """Each launch file of a package with each node that it starts."""
+    """Each launch file of a package with each of its nodes."""
     for path in sorted(Path(rospkg.RosPack().get_path(package), "launch").glob("*.launch")):
         config = load_config_default([str(path)], None, verbose=False)
         assert not config.config_errors, path
@@ -74,16 +74,16 @@ class CourseTest(unittest.TestCase):
         return rospy.wait_for_message("/turtle1/pose", Pose, PATIENCE_SECONDS)
 
     def test_the_velocity_publisher_drives_a_circle(self):
-        places_xy = []
+        positions_xy = []
         with running("learning_topic", "turtle_velocity_publisher.py"):
             wait_until("the turtle to move", lambda: self.pose().linear_velocity > 0.0)
             subscriber = rospy.Subscriber(
-                "/turtle1/pose", Pose, lambda pose: places_xy.append((pose.x, pose.y))
+                "/turtle1/pose", Pose, lambda pose: positions_xy.append((pose.x, pose.y))
             )
-            wait_until("poses", lambda: len(places_xy) > 300)
+            wait_until("poses", lambda: len(positions_xy) > 300)
             subscriber.unregister()
-        x, y = np.array(places_xy).T
-        # The circle through all places, by least squares: x^2 + y^2 = 2 a x + 2 b y + c.
+        x, y = np.array(positions_xy).T
+        # Least squares circle through all positions: x^2 + y^2 = 2 a x + 2 b y + c.
         a, b, c = np.linalg.lstsq(np.column_stack((2 * x, 2 * y, np.ones_like(x))), x**2 + y**2, rcond=None)[
             0
         ]
@@ -101,7 +101,7 @@ class CourseTest(unittest.TestCase):
         ):
             wait_until("the company info", lambda: "company info: Home Service" in printed())
 
-    def test_the_first_tutorial_is_there_under_both_its_names(self):
+    def test_talker_and_listener_exist_in_both_packages(self):
         for package, suffix, expected in (
             ("rospy_tutorials", ".py", "I heard hello world"),
             ("roscpp_tutorials", "", "I heard: [hello world"),
@@ -109,7 +109,7 @@ class CourseTest(unittest.TestCase):
             with running(package, f"listener{suffix}") as printed, running(package, f"talker{suffix}"):
                 wait_until(expected, lambda: expected in printed())  # noqa: B023
 
-    def test_a_launch_file_can_be_started_later(self):
+    def test_a_launch_file_can_be_started_with_a_delay(self):
         code, output = run(
             "timed_roslaunch", "timed_roslaunch.sh", "0.5", "learning_launch", "1_nodes.launch", "--nodes"
         )
@@ -144,7 +144,7 @@ class CourseTest(unittest.TestCase):
         self.assertEqual(code, 0, output)
         self.assertIn("5 + 6 = 11", output)
 
-    def test_a_polygon_is_drawn_and_a_senseless_one_refused(self):
+    def test_a_polygon_is_drawn_and_an_invalid_one_rejected(self):
         with running("learning_action", "draw_polygon_server.py"):
             code, output = run("learning_action", "draw_polygon_client.py", "4", "1.5")
             self.assertEqual(code, 0, output)
@@ -163,12 +163,12 @@ class CourseTest(unittest.TestCase):
                 found = Path(rospkg.RosPack().get_path(node.package), "nodes", node.type)
                 self.assertTrue(found.is_file(), f"{path}: {node.package} {node.type}")
 
-    def test_the_demos_of_tf_need_no_package_that_a_pupil_writes_anew(self):
+    def test_the_tf_demos_use_no_package_of_the_course(self):
         for package in ("turtle_tf", "turtle_tf2"):
             used = {node.package for _, node in nodes_launched_by(package)}
             self.assertEqual(used, {package, "turtlesim"})
 
-    def test_headers_of_the_turtles_are_found_without_being_asked_for(self):
+    def test_the_headers_of_turtlesim_are_on_the_include_path(self):
         folders = os.environ.get("CPLUS_INCLUDE_PATH", "").split(":")
         folders += ["/usr/include", "/opt/ros/noetic/include"]
         self.assertTrue(any(Path(folder, "turtlesim/Spawn.h").is_file() for folder in folders), folders)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""turtle2 follows turtle1: wherever that goes, it is there within ten seconds."""
+"""turtle2 follows turtle1, and reaches each of its positions within ten seconds."""
 
 import math
 import time

@@ -20,27 +20,27 @@ def test_the_world_is_found_among_gazebos_options(line):
     assert world_argument(line.split()) == "home.world"
 
 
-def test_no_world_among_options_alone():
+def test_options_alone_name_no_world():
     assert world_argument(["-e", "ode", "--verbose", "-u"]) is None
 
 
-def test_words_that_begin_like_an_option_are_not_that_option():
+def test_an_option_is_not_recognized_by_its_prefix():
     options, unknown = parse([*ROBOT, "-yaw", "1.57", "-xyz", "1", "-bond", "-Y", "0.5"], "/")
     assert (options.x, options.y, options.Y, options.b) == (0.0, 0.0, 0.5, False)
     assert unknown == ["-yaw", "1.57", "-xyz", "1", "-bond"]
 
 
-def test_a_value_is_taken_as_it_is_even_if_it_looks_like_an_option():
+def test_a_value_may_look_like_an_option():
     options, unknown = parse([*ROBOT, "-x", "-1e-3", "-reference_frame", "-world", "-y", "-2"], "/")
     assert (options.x, options.y, options.reference_frame, unknown) == (-1e-3, -2.0, "-world", [])
 
 
-def test_an_option_without_its_value_at_the_end_is_left_aside():
+def test_a_trailing_option_without_a_value_is_ignored():
     assert parse([*ROBOT, "-z"], "/")[1] == ["-z"]
     assert parse([*ROBOT, "-J", "hinge"], "/")[1] == ["-J", "hinge"]
 
 
-def test_older_names_are_understood():
+def test_older_option_names_are_accepted():
     options, unknown = parse(["-gazebo", "-file", "a.sdf", "-model", "a", "-namespace", "one"], "/")
     assert (options.sdf, options.robot_namespace, unknown) == (True, "one", [])
 
@@ -50,7 +50,7 @@ def test_a_robot_has_the_namespace_of_the_command_and_the_last_of_two_values():
     assert (options.robot_namespace, options.x, options.J) == ("/tb3_0/", 2.0, [["wheel", "-0.5"]])
 
 
-def test_two_sources_or_no_name_are_refused(capsys):
+def test_two_sources_or_a_missing_name_are_rejected(capsys):
     for words in ([*ROBOT, "-file", "a.urdf"], ["-urdf", "-param", "robot_description"]):
         with pytest.raises(SystemExit):
             parse(words, "/")

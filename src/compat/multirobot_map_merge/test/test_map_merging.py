@@ -1,4 +1,4 @@
-"""Maps of several robots are drawn where they lie."""
+"""Maps of several robots are merged at their poses."""
 
 import math
 
@@ -11,30 +11,30 @@ from planar import OCCUPIED, UNKNOWN, PlanarError, Pose2, grid_from_picture
 ROOM = grid_from_picture("####\n#..#\n####", 0.5)
 
 
-def test_one_map_stays_as_it_is():
+def test_one_map_is_unchanged():
     merged = merge_maps([(Pose2(), ROOM)])
     assert np.array_equal(merged.cells, ROOM.cells)
     assert (merged.origin, merged.resolution) == (ROOM.origin, 0.5)
 
 
-def test_two_rooms_stand_side_by_side_and_what_is_between_is_unknown():
+def test_two_maps_are_merged_and_cells_between_them_are_unknown():
     merged = merge_maps([(Pose2(), ROOM), (Pose2(3.0, 0.0), ROOM)])
     assert merged.cells.shape == (3, 10)
     assert (merged.cells[:, 4:6] == UNKNOWN).all()
     assert np.array_equal(merged.cells[:, 6:], ROOM.cells)
 
 
-def test_a_map_may_be_turned():
+def test_a_map_may_be_rotated():
     merged = merge_maps([(Pose2(0.0, 0.0, math.pi / 2.0), ROOM)])
     assert (merged.cells == OCCUPIED).sum() == (ROOM.cells == OCCUPIED).sum()
     assert merged.cells.shape in [(4, 3), (5, 3), (4, 4), (5, 4)]
 
 
-def test_where_two_disagree_the_more_occupied_is_believed():
+def test_the_more_occupied_of_two_values_is_used():
     free = grid_from_picture("....\n....\n....", 0.5)
     assert np.array_equal(merge_maps([(Pose2(), free), (Pose2(), ROOM)]).cells, ROOM.cells)
 
 
-def test_a_robot_that_is_nowhere_near_is_refused():
+def test_a_pose_too_far_away_is_rejected():
     with pytest.raises(PlanarError, match="the merged map would have"):
         merge_maps([(Pose2(), ROOM), (Pose2(1e7, 1e7), ROOM)])

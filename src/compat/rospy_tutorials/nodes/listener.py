@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tells what is said on the topic chatter."""
+"""Log the messages on the topic chatter."""
 
 import rospy
 from std_msgs.msg import String

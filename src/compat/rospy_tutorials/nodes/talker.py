@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Says hello on the topic chatter, ten times a second."""
+"""Publish a text on the topic chatter, ten times a second."""
 
 import rospy
 from std_msgs.msg import String
@@ -20,4 +20,4 @@ if __name__ == "__main__":
     try:
         talk()
     except rospy.ROSInterruptException:
-        pass  # Ctrl-C while it slept
+        pass  # Ctrl-C while sleeping

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Launches a file of a package some seconds later: timed_roslaunch.sh SECONDS PACKAGE FILE [ARGUMENT...]
+# Launch a file of a package after a delay: timed_roslaunch.sh SECONDS PACKAGE FILE [ARGUMENT...]
 if [[ $# -lt 3 ]]; then
   echo "usage: rosrun timed_roslaunch timed_roslaunch.sh SECONDS PACKAGE FILE [ARGUMENT...]" >&2
   exit 2

@@ -14,21 +14,21 @@ def driven(twist, seconds, model="burger"):
     return state
 
 
-def test_it_goes_straight_as_far_as_it_is_told():
+def test_a_straight_motion_has_the_commanded_length():
     state = driven(Twist2(0.2, 0.0), 3.0)
     assert state.base_in_odom.distance_to(Pose2(0.6, 0.0)) < 1e-9
     assert state.angles == pytest.approx((0.6 / WHEEL_RADIUS,) * 2)
 
 
 @pytest.mark.parametrize("model", TRACKS)
-def test_it_comes_round_a_circle(model):
+def test_a_circle_is_closed(model):
     state = driven(Twist2(0.5 / 3.0, math.tau / 3.0), 3.0, model)
     assert state.base_in_odom.distance_to(Pose2()) < 1e-6
     left, right = state.angles
     assert (right - left) * WHEEL_RADIUS == pytest.approx(math.tau * TRACKS[model])
 
 
-def test_it_stops_a_second_after_the_last_command():
+def test_a_command_expires_after_a_second():
     drive = DifferentialDrive("burger", 0.0)
     drive.command(Twist2(0.1, 0.0), 0.0)
     assert drive.advance(0.9).twist.v == 0.1

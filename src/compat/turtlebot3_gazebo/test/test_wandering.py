@@ -17,11 +17,11 @@ FREE = 3.5
         (0.6, FREE, 0.5, RIGHT_TURN),
     ],
 )
-def test_it_goes_where_there_is_room(ahead, left, right, velocity):
+def test_the_robot_drives_where_there_is_clearance(ahead, left, right, velocity):
     assert Wanderer().advance(ahead, left, right, 0.0) == velocity
 
 
-def test_it_turns_by_30_degrees_before_it_looks_again_also_across_the_back():
+def test_a_turn_takes_30_degrees_even_across_the_wrap_of_the_yaw():
     wanderer = Wanderer()
     start = math.pi - math.radians(10.0)
     assert wanderer.advance(FREE, FREE, 0.5, start) == LEFT_TURN

@@ -13,7 +13,7 @@ LAUNCHES = [
 
 
 def starts(text):
-    """Where the robots of a launch file start, by its arguments' defaults."""
+    """Start poses of the robots in a launch file, from the defaults of its arguments."""
     defaults = dict(re.findall(r'name="(\w+)" default="([^"]*)"', text))
     names = [name[: -len("x_pos")] for name in defaults if name.endswith("x_pos")]
     return [Pose2(float(defaults[f"{name}x_pos"]), float(defaults[f"{name}y_pos"])) for name in names]
@@ -21,7 +21,7 @@ def starts(text):
 
 @pytest.mark.parametrize("launch", LAUNCHES, ids=lambda path: path.stem)
 @pytest.mark.parametrize("robot", ["turtlebot3_burger", "turtlebot3_waffle"])
-def test_every_world_loads_whole_and_its_robots_stand_free_in_it(launch, robot):
+def test_every_world_loads_without_warnings_and_its_robots_start_free_of_contact(launch, robot):
     text = launch.read_text()
     (name,) = re.findall(r"worlds/(\w+\.world)", text)
     world = load_world(PACKAGE / "worlds" / name, [PACKAGE / "models"])

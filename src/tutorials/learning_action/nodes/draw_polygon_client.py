@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Has a polygon drawn: a client of the action /draw_polygon.
+"""Request a polygon: a client of the action /draw_polygon.
 
 draw_polygon_client.py [SIDES [LENGTH]]
 """
@@ -15,15 +15,15 @@ WAIT = rospy.Duration(10.0)
 
 
 def draw(sides="5", length="1.5"):
-    """Returns whether the polygon was drawn, and what the server says about it."""
+    """Request a polygon; returns whether it was drawn, and the status text."""
     client = actionlib.SimpleActionClient("/draw_polygon", DrawPolygonAction)
     if not client.wait_for_server(WAIT):
-        return False, "there is no server /draw_polygon"
+        return False, "the action server /draw_polygon is not available"
     goal = DrawPolygonGoal(int(sides), float(length))
     client.send_goal(goal, feedback_cb=lambda feedback: rospy.loginfo("side %d", feedback.sides_drawn))
     if not client.wait_for_result(WAIT + rospy.Duration(goal.sides)):
         client.cancel_goal()
-        return False, "it takes too long"
+        return False, "no result in time, cancelled"
     if client.get_state() != GoalStatus.SUCCEEDED:
         return False, client.get_goal_status_text()
     return True, f"{client.get_result().distance:.1f} m drawn"

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws polygons with turtle1: a server of this package's own action, learning_action/DrawPolygon."""
+"""Draw polygons with turtle1: a server of this package's action, learning_action/DrawPolygon."""
 
 import math
 
@@ -21,7 +21,7 @@ class DrawPolygonServer:
         self._server.start()
 
     def _draw(self, goal):
-        """Called for each goal, in a thread of the server's; it may be preempted between two sides."""
+        """Execute a goal, in a thread of the server; it can be preempted between two sides."""
         if goal.sides < 3 or not 0.0 < goal.length < 5.0:
             self._server.set_aborted(text="a polygon has at least 3 sides, of less than 5 m")
             return

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Asks the server /Two_Int_Plus for a sum.
+"""Request a sum: a client of the service /Two_Int_Plus.
 
 IntPlus_client.py A B
 """

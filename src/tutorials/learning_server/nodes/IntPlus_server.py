@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Adds two integers: a server of this package's own type, learning_server/IntPlus."""
+"""Add two integers: a server of this package's service type, learning_server/IntPlus."""
 
 import rospy
 from learning_server.srv import IntPlus, IntPlusResponse
 
 
 def on_call(request):
-    rospy.loginfo("asked for %d + %d", request.a, request.b)
+    rospy.loginfo("request: %d + %d", request.a, request.b)
     return IntPlusResponse(request.a + request.b)
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Asks for a second turtle: a client of the service /spawn.
+"""Spawn a second turtle: a client of the service /spawn.
 
 a_new_turtle.py [NAME [X Y THETA]]
 """

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Starts and stops the turtle: each call of the service /turtle_vel_command toggles whether it drives."""
+"""Start and stop the turtle: each call of the service /turtle_vel_command toggles whether it drives."""
 
 import rospy
 from geometry_msgs.msg import Twist
@@ -36,4 +36,4 @@ if __name__ == "__main__":
     try:
         TurtleCommand().drive()
     except rospy.ROSInterruptException:
-        pass  # Ctrl-C while it slept
+        pass  # Ctrl-C while sleeping

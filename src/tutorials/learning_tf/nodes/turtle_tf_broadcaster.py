@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tells tf where a turtle is in the frame world: its name is the frame's.
+"""Broadcast the pose of a turtle as a transform from world to the frame of its name.
 
 turtle_tf_broadcaster.py TURTLE
 """

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Spawns turtle2 and makes it follow turtle1: tf says where turtle1 is, seen from turtle2."""
+"""Spawn turtle2 and make it follow turtle1, by the transform from turtle2 to turtle1."""
 
 import math
 
@@ -8,8 +8,8 @@ import tf
 from geometry_msgs.msg import Twist
 from turtlesim.srv import Spawn
 
-# Speeds by how far away turtle1 is (1/s) and by the angle to it (1/s).
-PER_DISTANCE, PER_ANGLE = 0.5, 4.0
+# Gains from distance to linear velocity and from bearing to angular velocity [1/s].
+LINEAR_GAIN, ANGULAR_GAIN = 0.5, 4.0
 
 
 def spawn():
@@ -17,7 +17,7 @@ def spawn():
     try:
         rospy.ServiceProxy("/spawn", Spawn)(4.0, 2.0, 0.0, "turtle2")
     except rospy.ServiceException:
-        rospy.loginfo("there is a turtle2 already")
+        rospy.loginfo("turtle2 exists already")
 
 
 def follow():
@@ -29,10 +29,10 @@ def follow():
         try:
             (x, y, _), _ = listener.lookupTransform("turtle2", "turtle1", rospy.Time(0))
         except tf.Exception:
-            continue  # one of them has not told yet where it is
+            continue  # no transform of one of them yet
         twist = Twist()
-        twist.linear.x = PER_DISTANCE * math.hypot(x, y)
-        twist.angular.z = PER_ANGLE * math.atan2(y, x)
+        twist.linear.x = LINEAR_GAIN * math.hypot(x, y)
+        twist.angular.z = ANGULAR_GAIN * math.atan2(y, x)
         publisher.publish(twist)
 
 
@@ -42,4 +42,4 @@ if __name__ == "__main__":
         spawn()
         follow()
     except rospy.ROSInterruptException:
-        pass  # Ctrl-C while it slept
+        pass  # Ctrl-C while sleeping

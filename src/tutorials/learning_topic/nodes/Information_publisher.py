@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Publishes a message of this package's own type, learning_topic/Information, on /company_info."""
+"""Publish messages of this package's type, learning_topic/Information, on /company_info."""
 
 import rospy
 from learning_topic.msg import Information
@@ -20,4 +20,4 @@ if __name__ == "__main__":
     try:
         main()
     except rospy.ROSInterruptException:
-        pass  # Ctrl-C while it slept
+        pass  # Ctrl-C while sleeping

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints what companies tell about themselves on /company_info."""
+"""Log the messages on /company_info."""
 
 import rospy
 from learning_topic.msg import Information

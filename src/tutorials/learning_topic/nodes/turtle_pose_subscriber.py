@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Prints where the turtle is: subscribes to /turtle1/pose."""
+"""Log the pose of the turtle: subscribes to /turtle1/pose."""
 
 import rospy
 from turtlesim.msg import Pose
 
 
 def on_pose(pose):
-    """Called in a thread of rospy's for each message."""
+    """Called for each message, in a thread of rospy."""
     rospy.loginfo_throttle(1.0, "turtle pose: x %.2f, y %.2f, theta %.2f", pose.x, pose.y, pose.theta)
 
 

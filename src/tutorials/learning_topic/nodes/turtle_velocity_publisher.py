@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Drives the turtle in a circle: publishes velocities at 10 Hz on /turtle1/cmd_vel."""
+"""Drive the turtle in a circle: publishes velocities at 10 Hz on /turtle1/cmd_vel."""
 
 import rospy
 from geometry_msgs.msg import Twist
@@ -23,4 +23,4 @@ if __name__ == "__main__":
     try:
         main()
     except rospy.ROSInterruptException:
-        pass  # Ctrl-C while it slept
+        pass  # Ctrl-C while sleeping

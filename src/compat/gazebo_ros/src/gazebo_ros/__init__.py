@@ -1,1 +1,1 @@
-"""What launch files and scripts find in gazebo_ros, for sim_bridge."""
+"""The programs and services of gazebo_ros, backed by sim_bridge."""

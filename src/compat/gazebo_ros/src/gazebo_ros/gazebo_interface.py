@@ -1,4 +1,4 @@
-"""Calls of Gazebo's services, by the name that other people's scripts import them by."""
+"""Official module name for the clients of Gazebo's services."""
 
 from gazebo_ros.ros.services import (
     set_model_configuration_client,

@@ -1,4 +1,4 @@
-"""sim_bridge, started as gzserver is: the world named on the command line, the robots spawned later."""
+"""gzserver, backed by sim_bridge: the command line names the world; robots are spawned later."""
 
 import os
 import sys
@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import List, Optional
 
 EMPTY_WORLD = Path(__file__).parent / "empty.world"
-# Options of Gazebo 7 to 11, as server or with its window, that take a value; all others are flags.
+# Options of gazebo and gzserver 7 to 11 that take a value; all others are flags.
 OPTIONS_WITH_VALUE = (
     "-e --physics -p --play -s --server-plugin -o --profile --seed --iters --initial_sim_time "
     "--record_encoding --record_path --record_period --record_filter -g --gui-plugin --gui-client-plugin"
@@ -14,7 +14,7 @@ OPTIONS_WITH_VALUE = (
 
 
 def world_argument(arguments: List[str]) -> Optional[str]:
-    """The world among gzserver's arguments; None if there is none."""
+    """The world file in gzserver's arguments; None if there is none."""
     words = iter(arguments)
     for word in words:
         if word in OPTIONS_WITH_VALUE:
@@ -25,7 +25,7 @@ def world_argument(arguments: List[str]) -> Optional[str]:
 
 
 def find_world(world: str, folders: List[Path]) -> Path:
-    """The world's file: as named, or below one of the folders; the empty world if it is Gazebo's own."""
+    """Resolve a world file: as given, below one of the folders, or Gazebo's empty world."""
     path = Path(world)
     candidates = [path, *(folder / path for folder in folders)]
     for candidate in candidates:
@@ -35,7 +35,7 @@ def find_world(world: str, folders: List[Path]) -> Path:
 
 
 def main() -> None:
-    """Becomes sim_bridge without a robot."""
+    """Run sim_bridge without a robot."""
     from sim_bridge.ros.node import main as simulate
 
     folders = [Path(folder) for folder in os.environ.get("GAZEBO_RESOURCE_PATH", "").split(":") if folder]

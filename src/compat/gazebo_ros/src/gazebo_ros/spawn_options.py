@@ -1,18 +1,18 @@
-"""The command line of spawn_model, as Kinetic's takes it: what it knows counts, the rest is left aside."""
+"""Command line of spawn_model, as in Kinetic; unknown options are ignored with a warning."""
 
 import argparse
 from typing import List, Tuple
 
 FLAGS = {
-    "-unpause": "let time pass once it is there",
-    "-package_to_model": "accepted: package:// is understood",
-    "-b": "stay, and delete the model when interrupted",
+    "-unpause": "unpause the physics after spawning",
+    "-package_to_model": "accepted without effect: package:// is supported",
+    "-b": "keep running, and delete the model when interrupted",
 }
 VALUED = {
     "-reference_frame": "frame of the pose",
     "-gazebo_namespace": "namespace of the simulator",
     "-robot_namespace": "namespace of its topics",
-    "-wait": "wait until the model of that name is there",
+    "-wait": "wait until the model of this name exists",
 }
 POSE = {"-x": "m", "-y": "m", "-z": "m", "-R": "roll, rad", "-P": "pitch, rad", "-Y": "yaw, rad"}
 KINDS = {"-urdf": "the model is URDF", "-sdf": "the model is SDF"}
@@ -22,20 +22,28 @@ SOURCES = {
     "-database": "model in a folder of GAZEBO_MODEL_PATH",
 }
 STDIN = "-stdin"
-# Older names that Kinetic's still takes.
+# Older names that Kinetic accepts.
 ALIASES = {"-gazebo": "-sdf", "-namespace": "-robot_namespace", "-help": "-h"}
 ALONE = {*FLAGS, *KINDS, STDIN, "-h", "--help"}
 BEFORE_A_VALUE = {*VALUED, *POSE, *SOURCES, "-model"}
 
 
 def parse(words: List[str], namespace: str) -> Tuple[argparse.Namespace, List[str]]:
-    """The options, and the words that mean nothing; ``namespace``: that of the robot if none is named."""
+    """Parse the command line of spawn_model.
+
+    Args:
+        words: The arguments.
+        namespace: Default of ``-robot_namespace``.
+
+    Returns:
+        The options, and the unknown arguments.
+    """
     known, unknown = _divided(words)
     return _parser(namespace).parse_args(known), unknown
 
 
 def _divided(words: List[str]) -> Tuple[List[str], List[str]]:
-    """Words for the parser, which would take ``-yaw`` for ``-y aw`` and ``-1e-3`` for an option; the rest."""
+    """Split known from unknown arguments: argparse reads ``-yaw`` as ``-y aw`` and ``-1e-3`` as an option."""
     known: List[str] = []
     unknown: List[str] = []
     rest = [ALIASES.get(word, word) for word in words]
@@ -61,7 +69,7 @@ def _parser(namespace: str) -> argparse.ArgumentParser:
     for name, meaning in SOURCES.items():
         source.add_argument(name, help=meaning)
     source.add_argument(STDIN, action="store_true", help="the model comes from standard input")
-    parser.add_argument("-model", required=True, help="name that it gets")
+    parser.add_argument("-model", required=True, help="name of the model")
     for name, meaning in VALUED.items():
         parser.add_argument(name, help=meaning)
     parser.set_defaults(reference_frame="", gazebo_namespace="/gazebo", robot_namespace=namespace)

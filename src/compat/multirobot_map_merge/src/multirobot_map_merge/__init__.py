@@ -1,1 +1,1 @@
-"""One map of those of several robots."""
+"""Merges the maps of several robots."""

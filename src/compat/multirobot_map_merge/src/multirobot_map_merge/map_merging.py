@@ -1,4 +1,4 @@
-"""Several grids, whose places are known, made into one."""
+"""Merging of occupancy grids with known relative poses."""
 
 import math
 from typing import Sequence, Tuple
@@ -7,15 +7,21 @@ import numpy as np
 
 from planar import OCCUPIED, UNKNOWN, OccupancyGrid, PlanarError, Pose2
 
-# Of the merged grid, so that no robot that has lost itself makes it take all memory.
+# Limit of the merged grid, so that a wrong pose does not exhaust the memory.
 MAX_CELLS = 100_000_000
 
 
 def merge_maps(grids: Sequence[Tuple[Pose2, OccupancyGrid]]) -> OccupancyGrid:
-    """The grid of all that is known to any of the ``grids``, each with where its frame lies in the world.
+    """Merge occupancy grids; where two grids know a cell, the more occupied value is used.
 
-    As fine as the finest, along the world's axes; of two that know a cell the more occupied is believed.
-    Raises PlanarError if it would be too large.
+    Args:
+        grids: Pose of each grid's frame in the world, and the grid.
+
+    Returns:
+        A grid along the axes of the world, with the finest resolution of the grids.
+
+    Raises:
+        PlanarError: The merged grid would have more than MAX_CELLS cells.
     """
     resolution = min(grid.resolution for _, grid in grids)
     corners = np.vstack([_corners(frame_in_world, grid) for frame_in_world, grid in grids])
@@ -31,7 +37,7 @@ def merge_maps(grids: Sequence[Tuple[Pose2, OccupancyGrid]]) -> OccupancyGrid:
 
 
 def _corners(frame_in_world: Pose2, grid: OccupancyGrid) -> np.ndarray:
-    """(4, 2), in the world."""
+    """Corners of a grid: (4, 2), metres, in the world."""
     width, height = grid.cols * grid.resolution, grid.rows * grid.resolution
     ends = [(0.0, 0.0), (width, 0.0), (0.0, height), (width, height)]
     poses = [frame_in_world @ grid.origin @ Pose2(x, y) for x, y in ends]
@@ -47,9 +53,9 @@ def _merge_into(merged: OccupancyGrid, frame_in_world: Pose2, grid: OccupancyGri
     back = frame_in_world.inverse()
     c, s = math.cos(back.yaw), math.sin(back.yaw)
     inside_xy = points @ np.array([(c, s), (-s, c)]) + (back.x, back.y)
-    seen = grid.cells_of(inside_xy)
-    is_there = grid.contains(seen)
-    at, seen = at[is_there], seen[is_there]
-    values = np.minimum(grid.cells[seen[:, 0], seen[:, 1]], OCCUPIED)
+    cells_of_grid = grid.cells_of(inside_xy)
+    is_inside = grid.contains(cells_of_grid)
+    at, cells_of_grid = at[is_inside], cells_of_grid[is_inside]
+    values = np.minimum(grid.cells[cells_of_grid[:, 0], cells_of_grid[:, 1]], OCCUPIED)
     into = merged.cells
     into[at[:, 0], at[:, 1]] = np.maximum(into[at[:, 0], at[:, 1]], values)

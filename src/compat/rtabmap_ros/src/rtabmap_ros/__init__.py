@@ -1,1 +1,1 @@
-"""rtabmap's nodes, answered by what there is here."""
+"""The nodes of rtabmap_ros, backed by slam_lite."""

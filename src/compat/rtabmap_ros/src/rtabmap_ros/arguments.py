@@ -1,16 +1,21 @@
-"""rtabmap's command line as slam_lite's: its map under its topic, its frames by its parameters."""
+"""Translation of rtabmap's command line and parameters to those of slam_lite."""
 
 from typing import Callable, List
 
-# rtabmap's parameters by slam_lite's.
+# Parameter of slam_lite -> parameter of rtabmap.
 FRAMES = {"base_frame": "frame_id", "odom_frame": "odom_frame_id"}
 GRID = "grid_map"
 
 
 def slam_lite_arguments(arguments: List[str], parameter: Callable[[str, str], str]) -> List[str]:
-    """slam_lite's arguments for rtabmap's: without its options, with its frames, its map called as its grid.
+    """Translate rtabmap's arguments: options are dropped, ``map`` is published as rtabmap's ``grid_map``.
 
-    ``parameter``: the value of a private parameter of the node, or what is given for it.
+    Args:
+        arguments: Arguments of rtabmap.
+        parameter: Returns a private parameter of the node by name and default.
+
+    Returns:
+        Remappings and private parameters for slam_lite.
     """
     remappings = [word for word in arguments if ":=" in word]
     grid = next((word.split(":=", 1)[1] for word in remappings if word.startswith(f"{GRID}:=")), GRID)

@@ -1,1 +1,1 @@
-"""Examples for the TurtleBot3."""
+"""Examples for the TurtleBot3: patrol, obstacle stop, point operation, interactive marker."""

@@ -1,1 +1,1 @@
-"""A TurtleBot3 of wheels and odometry alone."""
+"""A TurtleBot3 with ideal wheels and odometry, without physics."""

@@ -1,4 +1,4 @@
-"""Two wheels that turn just as told, and where they bring the robot (turtlebot3_simulations 1.3)."""
+"""Ideal differential drive (turtlebot3_simulations 1.3)."""
 
 from dataclasses import dataclass
 from typing import Tuple
@@ -6,14 +6,21 @@ from typing import Tuple
 from planar import Pose2, Twist2
 
 WHEEL_RADIUS = 0.033
-# Metres between the wheels.
+# Model -> distance between the wheels [m].
 TRACKS = {"burger": 0.160, "waffle": 0.287, "waffle_pi": 0.287}
 TIMEOUT = 1.0
 
 
 @dataclass(frozen=True)
 class DriveState:
-    """After a step: pose, velocity, and the wheels' angles, rad, and speeds, rad/s, left and right."""
+    """State of the drive after a step.
+
+    Attributes:
+        base_in_odom: Pose of the robot.
+        twist: Velocity of the robot.
+        angles: Wheel angles, left and right [rad].
+        speeds: Wheel speeds, left and right [rad/s].
+    """
 
     base_in_odom: Pose2
     twist: Twist2
@@ -22,7 +29,7 @@ class DriveState:
 
 
 class DifferentialDrive:
-    """Keeps the last command for TIMEOUT seconds."""
+    """Integrates velocity commands, which expire after TIMEOUT seconds."""
 
     def __init__(self, model: str, now: float):
         self._track = TRACKS[model]
@@ -30,11 +37,11 @@ class DifferentialDrive:
         self._base_in_odom, self._angles = Pose2(), (0.0, 0.0)
 
     def command(self, twist: Twist2, now: float) -> None:
-        """Sets the velocity from now on."""
+        """Set the velocity from ``now`` on [s]."""
         self._command, self._commanded_at = twist, now
 
     def advance(self, now: float) -> DriveState:
-        """Turns the wheels until ``now``, seconds."""
+        """Integrate the motion until ``now`` [s]."""
         seconds, self._now = max(0.0, now - self._now), now
         if now - self._commanded_at > TIMEOUT:
             self._command = Twist2()

@@ -1,1 +1,1 @@
-"""What drives a TurtleBot3 about by itself."""
+"""Autonomous wandering of a TurtleBot3."""

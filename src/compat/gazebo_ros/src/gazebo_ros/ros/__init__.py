@@ -1,1 +1,1 @@
-"""What speaks ROS in gazebo_ros."""
+"""The ROS interface of gazebo_ros."""

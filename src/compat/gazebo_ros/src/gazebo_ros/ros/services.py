@@ -1,4 +1,4 @@
-"""Calls of Gazebo's services."""
+"""Clients of Gazebo's services."""
 
 import rospy
 from gazebo_msgs.srv import SetModelConfiguration, SpawnModel
@@ -9,7 +9,7 @@ SERVICE_SECONDS = 60.0
 def spawn_sdf_model_client(
     model_name, model_xml, robot_namespace, initial_pose, reference_frame, gazebo_namespace
 ):
-    """Spawns an SDF model; returns whether it is there."""
+    """Spawn an SDF model; returns whether it succeeded."""
     request = (model_name, model_xml, robot_namespace, initial_pose, reference_frame)
     return _call(f"{gazebo_namespace}/spawn_sdf_model", SpawnModel, request)
 
@@ -17,7 +17,7 @@ def spawn_sdf_model_client(
 def spawn_urdf_model_client(
     model_name, model_xml, robot_namespace, initial_pose, reference_frame, gazebo_namespace
 ):
-    """Spawns a URDF model; returns whether it is there."""
+    """Spawn a URDF model; returns whether it succeeded."""
     request = (model_name, model_xml, robot_namespace, initial_pose, reference_frame)
     return _call(f"{gazebo_namespace}/spawn_urdf_model", SpawnModel, request)
 
@@ -25,7 +25,7 @@ def spawn_urdf_model_client(
 def set_model_configuration_client(
     model_name, model_param_name, joint_names, joint_positions, gazebo_namespace
 ):
-    """Sets joint positions; returns whether they are set."""
+    """Set joint positions; returns whether it succeeded."""
     request = (model_name, model_param_name, joint_names, joint_positions)
     return _call(f"{gazebo_namespace}/set_model_configuration", SetModelConfiguration, request)
 

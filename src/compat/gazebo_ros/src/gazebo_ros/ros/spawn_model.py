@@ -1,4 +1,4 @@
-"""The command spawn_model: puts a model from a file, a parameter or stdin into the running simulation."""
+"""The command spawn_model: spawns a model from a file, a parameter or stdin."""
 
 import argparse
 import contextlib
@@ -30,11 +30,11 @@ PARAMETER_SECONDS = 30.0
 
 
 class SpawnError(Exception):
-    """The model cannot be had; the text says why."""
+    """The model cannot be spawned; the text states why."""
 
 
 def quaternion(roll: float, pitch: float, yaw: float) -> Tuple[float, float, float, float]:
-    """x, y, z, w of the rotation about the fixed axes x, y, z, in this order."""
+    """Quaternion x, y, z, w of rotations about the fixed axes x, y, z, in this order [rad]."""
     (sr, cr), (sp, cp), (sy, cy) = ((math.sin(a / 2), math.cos(a / 2)) for a in (roll, pitch, yaw))
     return (
         sr * cp * cy - cr * sp * sy,
@@ -45,7 +45,7 @@ def quaternion(roll: float, pitch: float, yaw: float) -> Tuple[float, float, flo
 
 
 def spawn(options: argparse.Namespace) -> None:
-    """Spawns the model. Raises SpawnError."""
+    """Spawn the model of the command line. Raises SpawnError."""
     pose = Pose(
         Point(options.x, options.y, options.z), Quaternion(*quaternion(options.R, options.P, options.Y))
     )
@@ -57,13 +57,13 @@ def spawn(options: argparse.Namespace) -> None:
     rospy.wait_for_service(f"{namespace}/spawn_{'urdf' if options.urdf else 'sdf'}_model", SERVICE_SECONDS)
     with _deferring_interrupts():
         if not client(options.model, xml, options.robot_namespace, pose, options.reference_frame, namespace):
-            raise SpawnError(f"{options.model} is not spawned")
+            raise SpawnError(f"{options.model} was not spawned")
         if options.b:
             rospy.on_shutdown(lambda: _delete(options.model, namespace))
     if joints and not set_model_configuration_client(
         options.model, options.param or "", list(joints), list(joints.values()), namespace
     ):
-        raise SpawnError("the joints are not set")
+        raise SpawnError(f"the joint positions of {options.model} were not set")
     if options.unpause:
         rospy.ServiceProxy(f"{namespace}/unpause_physics", Empty)()
     if options.b:
@@ -72,16 +72,16 @@ def spawn(options: argparse.Namespace) -> None:
 
 @contextlib.contextmanager
 def _deferring_interrupts() -> Iterator[None]:
-    """What interrupts is heard only at the end: nobody else knows what has been spawned meanwhile."""
-    heard: List[int] = []
-    with handling_signals(lambda number, _frame: heard.append(number)):
+    """Defer interrupts while a model is spawned, so that ``-b`` can delete it."""
+    signals: List[int] = []
+    with handling_signals(lambda number, _frame: signals.append(number)):
         yield
-    if heard:
+    if signals:
         raise KeyboardInterrupt
 
 
 def _joints(options) -> Dict[str, float]:
-    """Positions by joint."""
+    """Joint name -> position."""
     try:
         return {name: float(position) for name, position in options.J}
     except ValueError as error:
@@ -89,7 +89,7 @@ def _joints(options) -> Dict[str, float]:
 
 
 def _delete(model: str, namespace: str) -> None:
-    with contextlib.suppress(rospy.ServiceException):  # the simulator may be gone already
+    with contextlib.suppress(rospy.ServiceException):  # the simulator may have ended
         rospy.ServiceProxy(f"{namespace}/delete_model", DeleteModel)(model)
 
 
@@ -122,10 +122,10 @@ def _wait_for_model(name: str, namespace: str) -> None:
 
 
 def main() -> None:
-    """Exit code 0 if the model is there, 1 if not, 130 if interrupted before that was known."""
+    """Exit code 0 if the model was spawned, 1 if not, 130 if interrupted before that."""
     options, unknown = parse(rospy.myargv()[1:], rospy.get_namespace())
     warn_unknown("spawn_model", unknown)
-    # rospy's own handler may wait for ever for a lock that is held by what it interrupts.
+    # rospy's handler could deadlock on a lock that is held by the interrupted code.
     init_node("spawn_model", anonymous=True)
     on_signals(signal.default_int_handler)
     try:

@@ -1,1 +1,1 @@
-"""What speaks ROS in multirobot_map_merge."""
+"""The ROS interface of multirobot_map_merge."""

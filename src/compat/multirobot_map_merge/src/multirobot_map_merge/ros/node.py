@@ -1,4 +1,4 @@
-"""The node ``map_merge``, with the parameters of multirobot_map_merge, for robots whose places are known."""
+"""The node ``map_merge``, with the parameters of multirobot_map_merge, for robots with known poses."""
 
 import threading
 from typing import Dict, List, Tuple
@@ -15,7 +15,7 @@ from planar_ros.node.shell import run
 
 
 class MapMerge:
-    """Finds the robots' maps, and publishes one of them all."""
+    """Finds the maps of the robots, and publishes the merged map."""
 
     def __init__(self) -> None:
         self._map_topic = rospy.get_param("~robot_map_topic", "map")
@@ -23,7 +23,10 @@ class MapMerge:
         self._frame = frame_name(rospy.get_param("~world_frame", "world"))
         self._topic = rospy.resolve_name(rospy.get_param("~merged_map_topic", "map"))
         if not rospy.get_param("~known_init_poses", True):
-            rospy.logwarn("places of the robots are not guessed here: tf and init_pose have to tell them")
+            rospy.logwarn(
+                "~known_init_poses is false, but map_merge does not estimate poses: provide them by tf or "
+                "by the parameters init_pose_x, init_pose_y and init_pose_yaw"
+            )
         self._transforms = Transforms()
         self._lock = threading.Lock()
         self._maps: Dict[str, Tuple[str, OccupancyGrid]] = {}
@@ -57,12 +60,12 @@ class MapMerge:
         try:
             grid = merge_maps(placed)
         except PlanarError as error:
-            rospy.logwarn_throttle(10.0, "not merged: %s", error)
+            rospy.logwarn_throttle(10.0, "maps not merged: %s", error)
             return
         self._publisher.publish(grid_to_msg(grid, rospy.Time.now(), self._frame))
 
     def _map_frame_in_world(self, robot: str, frame: str) -> Pose2:
-        """Where a map's frame lies in the world: as tf has it, else as the robot's parameters say."""
+        """Pose of a map's frame in the world: from tf, else from the robot's parameters."""
         frame_in_world = self._transforms.lookup(self._frame, frame)
         if frame_in_world is not None:
             return frame_in_world

@@ -1,4 +1,4 @@
-"""dynparam of dynamic_reconfigure, which for a server or a master that does not exist would wait for ever."""
+"""dynparam of dynamic_reconfigure with a time limit for a missing server or master."""
 
 import runpy
 import sys
@@ -14,11 +14,11 @@ SERVER_COMMANDS = ("dump", "get", "load", "set", "set_from_parameters")
 
 
 def main() -> None:
-    """Ends with exit code 1 if no server, or no master, answers."""
+    """Run dynparam; exit code 1 if the server or the master does not respond."""
     if not rosgraph.is_master_online():
         sys.exit(f"error: no ROS master at {rosgraph.get_master_uri()}")
     sys.argv = with_timeout(sys.argv)
-    roslib.load_manifest = lambda _: None  # Debian's libraries are on the path, their manifests are not
+    roslib.load_manifest = lambda _: None  # Debian installs the libraries without manifests
     try:
         runpy.run_path(TOOL, run_name="__main__")
     except rospy.ROSException as error:
@@ -26,7 +26,7 @@ def main() -> None:
 
 
 def with_timeout(argv: List[str]) -> List[str]:
-    """The command line with a time limit, unless it has one or speaks to no server."""
+    """Add a time limit to a command that calls a server, unless it has one."""
     has_limit = any(argument.startswith(("-t", "--timeout")) for argument in argv)
     if has_limit or len(argv) < 2 or argv[1] not in SERVER_COMMANDS:
         return argv

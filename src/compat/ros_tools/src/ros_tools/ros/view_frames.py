@@ -1,4 +1,4 @@
-"""Draws the tree of frames into frames.pdf, as view_frames of tf: Debian's dies of Python 2's strings."""
+"""view_frames of tf, which draws the tree of frames into frames.pdf; Debian's program fails with Python 3."""
 
 import argparse
 import shutil
@@ -15,24 +15,26 @@ LISTEN_SECONDS = 5.0  # s, as tf's
 
 
 def main() -> None:
-    """Ends with exit code 1 without a node that answers, or without graphviz."""
-    parser = argparse.ArgumentParser(prog="view_frames", description=__doc__)
-    parser.add_argument("--node", help="the node whose frames are drawn (default: what is heard on /tf)")
+    """Exit code 1 if the node does not respond or graphviz is not installed."""
+    parser = argparse.ArgumentParser(
+        prog="view_frames", description="Draw the tree of frames into frames.pdf."
+    )
+    parser.add_argument("--node", help="node whose frames are drawn (default: the frames on /tf)")
     options = parser.parse_args(rospy.myargv()[1:])
     rospy.init_node("view_frames", anonymous=True)
     try:
         graph = _graph_of(options.node) if options.node else _graph_of_tf()
     except (rospy.ROSException, rospy.ServiceException) as error:
-        sys.exit(f"error: {options.node} tells no frames: {error}")
+        sys.exit(f"error: {options.node} provides no service tf_frames: {error}")
     Path("frames.gv").write_text(graph)
     if shutil.which("dot") is None:
-        sys.exit("error: graphviz is not installed: the tree is in frames.gv only")
+        sys.exit("error: graphviz is not installed; the tree is in frames.gv")
     subprocess.run(["dot", "-Tpdf", "frames.gv", "-o", "frames.pdf"], check=True)
     print("frames.pdf generated")
 
 
 def _graph_of_tf() -> str:
-    """In graphviz' language."""
+    """The frames on /tf in the DOT language."""
     print(f"Listening to /tf for {LISTEN_SECONDS} seconds")
     listener = tf.TransformListener()
     time.sleep(LISTEN_SECONDS)

@@ -1,1 +1,1 @@
-"""What speaks ROS in rtabmap_ros."""
+"""The ROS interface of rtabmap_ros."""

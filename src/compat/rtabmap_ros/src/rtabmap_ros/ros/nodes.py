@@ -1,4 +1,4 @@
-"""The nodes: slam_lite, started as rtabmap is, and what is said instead of rtabmapviz."""
+"""The nodes rtabmap, backed by slam_lite, and rtabmapviz, which prints a notice."""
 
 import os
 import sys
@@ -9,29 +9,29 @@ import rospy
 from rtabmap_ros.arguments import slam_lite_arguments
 
 RTABMAPVIZ_NOTICE = (
-    "rtabmap is not here: slam_lite makes a 2D map of the laser's scans in its place, without pictures, "
-    "points or a database"
+    "rtabmap is not available: slam_lite makes a 2D map of the laser scans instead, without images, point "
+    "clouds and database"
 )
-NO_VIZ = "rtabmapviz is not here: rviz shows the map, and the cockpit does in the browser"
+NO_VIZ = "rtabmapviz is not available: the map is shown by rviz, and by the cockpit in the browser"
 
 
 def rtabmap() -> None:
-    """Becomes slam_lite."""
+    """Run slam_lite with rtabmap's arguments."""
     from slam_lite.ros.node import main as make_map
 
     print(RTABMAPVIZ_NOTICE, file=sys.stderr)
     sys.argv[1:] = slam_lite_arguments(sys.argv[1:], _parameter)
-    rospy.names.reload_mappings(sys.argv)  # rospy has read them when it was imported
+    rospy.names.reload_mappings(sys.argv)  # rospy read the original ones when it was imported
     make_map()
 
 
 def rtabmapviz() -> None:
-    """Says that there is nothing to see here."""
+    """Print a notice."""
     print(NO_VIZ, file=sys.stderr)
 
 
 def _parameter(name: str, default: str) -> str:
-    """Read before the node is there: slam_lite begins it."""
+    """Read a private parameter before the node is initialized, which slam_lite does."""
     names = [word.split(":=", 1)[1] for word in sys.argv if word.startswith("__name:=")]
     parts = [os.environ.get("ROS_NAMESPACE", "").strip("/"), *(names or ["rtabmap"])]
     node = "/" + "/".join(filter(None, parts))

@@ -1,4 +1,4 @@
-"""What somebody types, line by line, until there is no more or the node is asked to end."""
+"""Lines from standard input that a shutdown of the node interrupts."""
 
 import sys
 import time
@@ -12,7 +12,10 @@ POLL_SECONDS = 0.1
 
 
 def read_lines() -> Iterator[str]:
-    """Reading would wait for the next key: rospy's handler of Ctrl-C interrupts nothing."""
+    """Lines from standard input until its end or the node's shutdown.
+
+    Polls, because rospy's SIGINT handler does not interrupt a blocking read.
+    """
     pipe = Pipe(sys.stdin.fileno())
     while not (rospy.is_shutdown() or pipe.is_at_end):
         yield from pipe.read().splitlines()

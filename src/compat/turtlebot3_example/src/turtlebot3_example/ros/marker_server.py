@@ -1,4 +1,4 @@
-"""The node ``turtlebot3_marker_server``: an arrow and a ring in rviz, by which the robot is drawn along."""
+"""The node ``turtlebot3_marker_server``: an interactive marker in rviz that drives the robot."""
 
 from typing import Any
 
@@ -17,11 +17,11 @@ COMMANDS = "interactive_marker_velocity_smoother/raw_cmd_vel"
 
 
 class MarkerServer:
-    """As far as the marker is drawn away from the robot, so fast it goes after it; then it snaps back."""
+    """Publishes a velocity proportional to the marker's displacement, then resets the marker."""
 
     def __init__(self) -> None:
-        self._v_a_metre = rospy.get_param("~linear_scale", 1.0)
-        self._omega_a_radian = rospy.get_param("~angular_scale", 2.2)
+        self._linear_scale = rospy.get_param("~linear_scale", 1.0)
+        self._angular_scale = rospy.get_param("~angular_scale", 2.2)
         self._publisher = rospy.Publisher(COMMANDS, Twist, queue_size=1)
         publish_on_shutdown(self._publisher, Twist())
         self._server = _server()
@@ -29,9 +29,9 @@ class MarkerServer:
         self._server.applyChanges()
 
     def _follow(self, feedback: InteractiveMarkerFeedback) -> None:
-        drawn, message = pose2_from_msg(feedback.pose), Twist()
-        message.linear.x = self._v_a_metre * drawn.x
-        message.angular.z = self._omega_a_radian * drawn.yaw
+        displacement, message = pose2_from_msg(feedback.pose), Twist()
+        message.linear.x = self._linear_scale * displacement.x
+        message.angular.z = self._angular_scale * displacement.yaw
         self._publisher.publish(message)
         self._server.setPose(MARKER, pose2_to_msg(Pose2()))
         self._server.applyChanges()
@@ -40,7 +40,7 @@ class MarkerServer:
 def _server() -> Any:
     try:
         from interactive_markers.interactive_marker_server import InteractiveMarkerServer
-    except ImportError as error:  # it comes with rviz, without which it is of no use
+    except ImportError as error:  # installed with rviz
         raise PlanarError(
             "python3-interactive-markers is not installed: ./scripts/setup.sh --rviz"
         ) from error
@@ -50,7 +50,7 @@ def _server() -> Any:
 def _marker(frame: str) -> InteractiveMarker:
     marker = InteractiveMarker(name=MARKER, scale=1.0, pose=pose2_to_msg(Pose2()))
     marker.header.frame_id = frame.lstrip("/")
-    half = 0.5**0.5  # the x axis of a control's frame is its axis: it lies ahead, or upwards
+    half = 0.5**0.5  # a control acts along the x axis of its frame: ahead, or upwards
     marker.controls = [
         _control("move_x", InteractiveMarkerControl.MOVE_AXIS, Quaternion(half, 0.0, 0.0, half)),
         _control("rotate_z", InteractiveMarkerControl.MOVE_ROTATE, Quaternion(0.0, half, 0.0, half)),

@@ -1,4 +1,4 @@
-"""The node ``turtlebot3_obstacle``: goes ahead, and stops before what is there."""
+"""The node ``turtlebot3_obstacle``: drives ahead and stops before obstacles."""
 
 import math
 
@@ -9,12 +9,12 @@ from sensor_msgs.msg import LaserScan
 from planar_ros.node.last_words import publish_on_shutdown
 from planar_ros.node.shell import run
 
-# m/s, and metres: the distance to stop at with the lidar's error.
+# Speed [m/s], and distance at which to stop, including the lidar's error [m].
 SPEED, SAFE_DISTANCE = 0.22, 0.25
 
 
 class ObstacleStop:
-    """Answers each scan with a velocity."""
+    """Publishes a velocity for each scan."""
 
     def __init__(self) -> None:
         self._is_moving = True

@@ -1,4 +1,4 @@
-"""A robot that goes where it is told by odometry."""
+"""Control of a robot along poses by odometry."""
 
 import time
 from typing import Callable, Iterable, Optional
@@ -16,7 +16,7 @@ RATE, ODOMETRY_SECONDS, POLL_SECONDS = 15.0, 60.0, 0.02
 
 
 class OdometryController:
-    """Told where it is by ``odom``, driven by ``cmd_vel``."""
+    """Subscribes to ``odom``, publishes ``cmd_vel``."""
 
     def __init__(self) -> None:
         self._base: Optional[Pose2] = None
@@ -25,30 +25,39 @@ class OdometryController:
         rospy.Subscriber("odom", Odometry, self._on_odometry, queue_size=1)
 
     def base_in_odom(self) -> Pose2:
-        """Where it is in ``odom``. Raises rospy.ROSException if nobody says so."""
+        """Pose of the robot in ``odom``. Raises rospy.ROSException if there is no odometry."""
         deadline = time.monotonic() + ODOMETRY_SECONDS
         while self._base is None:
             if rospy.is_shutdown():
                 raise rospy.ROSInterruptException("interrupted")
             if time.monotonic() > deadline:
-                raise rospy.ROSException(f"no odometry on {rospy.resolve_name('odom')}")
+                raise rospy.ROSException(f"no odometry received on {rospy.resolve_name('odom')}")
             time.sleep(POLL_SECONDS)
         return self._base
 
     def follow(
-        self, places: Iterable[Pose2], align_yaw: bool, should_continue: Callable[[], bool] = lambda: True
+        self, poses: Iterable[Pose2], align_yaw: bool, should_continue: Callable[[], bool] = lambda: True
     ) -> bool:
-        """Whether it has been at all places, one after the other, while ``goes_on``."""
+        """Drive to poses in order.
+
+        Args:
+            poses: Poses in ``odom``.
+            align_yaw: Whether the robot turns to the yaw of each pose.
+            should_continue: Called in each period; False stops the robot.
+
+        Returns:
+            Whether all poses were reached.
+        """
         rate = rospy.Rate(RATE)
-        for place in places:
-            velocity = velocity_to(self.base_in_odom(), place, align_yaw)
+        for goal in poses:
+            velocity = velocity_to(self.base_in_odom(), goal, align_yaw)
             while velocity is not None:
                 if rospy.is_shutdown() or not should_continue():
                     self.stop()
                     return False
                 self.drive(velocity)
                 rate.sleep()
-                velocity = velocity_to(self.base_in_odom(), place, align_yaw)
+                velocity = velocity_to(self.base_in_odom(), goal, align_yaw)
         self.stop()
         return True
 

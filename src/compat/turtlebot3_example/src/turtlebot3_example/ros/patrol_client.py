@@ -1,4 +1,4 @@
-"""The command turtlebot3_client: asks for a patrol, and sends the robot on it."""
+"""The command turtlebot3_client: reads a patrol from stdin and sends it to the action server."""
 
 import sys
 
@@ -29,7 +29,7 @@ SERVER_SECONDS = 30.0
 
 
 def main() -> None:
-    """Exit code 0 if the last patrol went well or none was asked for, 1 if not, 2 on nonsense."""
+    """Exit code 0 if the last patrol succeeded or none was entered, 1 if it failed, 2 on invalid input."""
     init_node("turtlebot3_client", disable_signals=False)
     client = actionlib.SimpleActionClient("turtlebot3", Turtlebot3Action)
     is_done = True
@@ -45,7 +45,7 @@ def main() -> None:
             print(f"expected a mode (s, t, c), an area and a count, got {line.strip()!r}", file=sys.stderr)
             sys.exit(2)
         if not client.wait_for_server(rospy.Duration(SERVER_SECONDS)):
-            print("no turtlebot3_server answers", file=sys.stderr)
+            print("the action server turtlebot3 is not available", file=sys.stderr)
             sys.exit(1)
         client.send_goal_and_wait(goal)
         is_done = client.get_state() == actionlib.GoalStatus.SUCCEEDED

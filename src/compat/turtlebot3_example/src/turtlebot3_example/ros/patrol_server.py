@@ -1,4 +1,4 @@
-"""The node ``turtlebot3``: an action that patrols along a square, a triangle or a circle."""
+"""The node ``turtlebot3``: action server for patrols along a square, a triangle or a circle."""
 
 from contextlib import suppress
 
@@ -21,7 +21,7 @@ class PatrolServer:
         rospy.loginfo("Server On")
 
     def _execute(self, request) -> None:
-        with suppress(rospy.ROSInterruptException):  # by Ctrl-C on the way
+        with suppress(rospy.ROSInterruptException):  # Ctrl-C during a patrol
             self._patrol(request)
 
     def _patrol(self, request) -> None:

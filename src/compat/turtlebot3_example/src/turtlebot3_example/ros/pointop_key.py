@@ -1,4 +1,4 @@
-"""The command turtlebot3_pointop_key: goes to the places that are typed, x, y in odom and degrees."""
+"""The command turtlebot3_pointop_key: drives to poses from stdin: x, y in odom [m], and yaw in degrees."""
 
 import math
 import sys
@@ -25,17 +25,17 @@ If you want to close, insert 's'
 
 
 def main() -> None:
-    """Exit code 0, 1 if there is no odometry, or 2 if what is typed is no place."""
+    """Exit code 0, 1 without odometry, or 2 on invalid input."""
     init_node("turtlebot3_pointop_key", disable_signals=False)
     try:
         with suppress(rospy.ROSInterruptException):
-            _go_where_is_typed(OdometryController())
+            _drive_to_entered_poses(OdometryController())
     except rospy.ROSException as error:
         print(error, file=sys.stderr)
         sys.exit(1)
 
 
-def _go_where_is_typed(controller: OdometryController) -> None:
+def _drive_to_entered_poses(controller: OdometryController) -> None:
     print(MESSAGE, flush=True)
     for line in read_lines():
         if line.strip() in ("", "s"):
@@ -49,5 +49,7 @@ def _go_where_is_typed(controller: OdometryController) -> None:
             sys.exit(2)
         controller.follow([Pose2(x, y, math.radians(degrees))], align_yaw=True)
         base_in_odom = controller.base_in_odom()
-        rospy.loginfo("there: %.2f %.2f %.0f", base_in_odom.x, base_in_odom.y, math.degrees(base_in_odom.yaw))
+        rospy.loginfo(
+            "reached: %.2f %.2f %.0f", base_in_odom.x, base_in_odom.y, math.degrees(base_in_odom.yaw)
+        )
         print(MESSAGE, flush=True)

@@ -1,1 +1,1 @@
-"""What speaks ROS in turtlebot3_fake."""
+"""The ROS interface of turtlebot3_fake."""

@@ -1,4 +1,4 @@
-"""The node ``turtlebot3_fake_node``: what wheels that are only thought of do."""
+"""The node ``turtlebot3_fake_node``: odometry and joint states of an ideal differential drive."""
 
 import threading
 
@@ -19,12 +19,12 @@ VARIANCES = (0.1, 0.1, 1e6, 1e6, 1e6, 0.2)
 
 
 class FakeNode:
-    """Moves on by a timer; the last command counts for a second."""
+    """Integrates the velocity command in a timer; it expires after a second."""
 
     def __init__(self) -> None:
         model = rospy.get_param("tb3_model", "")
         if model not in TRACKS:
-            raise SettingsError(f"parameter tb3_model: {model!r} is none of {', '.join(TRACKS)}")
+            raise SettingsError(f"parameter tb3_model: {model!r} is not one of {', '.join(TRACKS)}")
         names = ("wheel_left_joint", "wheel_right_joint")
         self._joints = [rospy.get_param(f"{name}_name", name) for name in names]
         self._joint_frame = rospy.get_param("joint_states_frame", "base_footprint")

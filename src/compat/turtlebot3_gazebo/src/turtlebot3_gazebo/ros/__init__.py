@@ -1,1 +1,1 @@
-"""What speaks ROS in turtlebot3_gazebo."""
+"""The ROS interface of turtlebot3_gazebo."""

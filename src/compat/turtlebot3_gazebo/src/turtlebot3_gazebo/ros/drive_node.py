@@ -1,4 +1,4 @@
-"""The node ``turtlebot3_drive``."""
+"""The node ``turtlebot3_drive``: wanders without hitting obstacles."""
 
 import math
 
@@ -17,7 +17,7 @@ SIDE = math.radians(30.0)
 
 
 class DriveNode:
-    """Answers each scan with a velocity; stops the robot when it ends."""
+    """Publishes a velocity for each scan, and zero on shutdown."""
 
     def __init__(self) -> None:
         rospy.loginfo("TurtleBot3 Simulation Node Init")
@@ -41,7 +41,7 @@ class DriveNode:
 
 
 def _range_at(scan: LaserScan, angle: float) -> float:
-    """The distance at an angle of a scan all around, metres; the farthest where nothing is seen."""
+    """Range at an angle of a full scan [m]; range_max without an echo."""
     turn = (angle - scan.angle_min) % math.tau
     number = round(turn / scan.angle_increment) % len(scan.ranges)
     distance = scan.ranges[number]
