@@ -1,4 +1,4 @@
-"""Two hosts with a cable between them, or one without any: network namespaces of this machine. Needs root."""
+"""Hosts as network namespaces of this machine: two with a link, or one isolated. Needs root."""
 
 import ctypes
 import os
@@ -13,14 +13,14 @@ MASTER_PORT = 11311
 
 
 class Host:
-    """A network namespace with one address, ``address``: on its end of a cable, or its loopback's."""
+    """A network namespace with one ``address``: of its end of the link, or of its loopback."""
 
     def __init__(self, name: str, address: str):
         self.name, self.address = name, address
         self._processes: List[subprocess.Popen] = []
 
     def environment(self, master: "Host") -> dict:
-        """What ROS needs to know on this host."""
+        """Environment variables for ROS on this host."""
         return {
             **os.environ,
             "ROS_MASTER_URI": f"http://{master.address}:{MASTER_PORT}",
@@ -28,7 +28,7 @@ class Host:
         }
 
     def start(self, master: "Host", *command: str, folder: Optional[Path] = None) -> subprocess.Popen:
-        """Starts a program on this host; in a ``folder``, or here."""
+        """Start a program on this host, in ``folder`` or the current folder."""
         process = subprocess.Popen(
             ["ip", "netns", "exec", self.name, *command],
             env=self.environment(master),
@@ -39,7 +39,7 @@ class Host:
         return process
 
     def stop_all(self) -> None:
-        """Ends what was started, the last first."""
+        """End the started programs in reverse order."""
         for process in reversed(self._processes):
             if process.poll() is None:
                 process.send_signal(signal.SIGINT)
@@ -50,17 +50,17 @@ class Host:
                     process.wait()
 
     def enter(self) -> None:
-        """Puts this process onto this host, with all threads that it starts from now on."""
+        """Move this process, and threads that it starts later, to this host."""
         with Path("/var/run/netns", self.name).open("rb") as namespace:
             if ctypes.CDLL(None, use_errno=True).setns(namespace.fileno(), CLONE_NEWNET) != 0:
                 raise OSError(ctypes.get_errno(), f"cannot enter {self.name}")
 
 
 class IsolatedHost:
-    """A host that reaches nobody but itself; a context that takes it away in the end."""
+    """Context of a host that has only its loopback."""
 
     def __init__(self):
-        self._host = Host(f"island{uuid.uuid4().hex[:6]}", "127.0.0.1")
+        self._host = Host(f"isolated{uuid.uuid4().hex[:6]}", "127.0.0.1")
 
     def __enter__(self) -> Host:
         _ip("netns", "add", self._host.name)
@@ -73,7 +73,7 @@ class IsolatedHost:
 
 
 class NetworkLink:
-    """Two hosts that reach each other; a context that takes them away in the end."""
+    """Context of two connected hosts: ``robot`` and ``desk``."""
 
     def __init__(self):
         number = uuid.uuid4().hex[:6]
@@ -109,7 +109,7 @@ class NetworkLink:
             _ip("netns", "delete", host.name)
 
     def disconnect(self) -> None:
-        """Nothing comes through any more."""
+        """Take the link down."""
         _ip("-n", self.desk.name, "link", "set", "cable", "down")
 
     def reconnect(self) -> None:
@@ -117,9 +117,9 @@ class NetworkLink:
 
 
 def routes_of(host: Host) -> str:
-    """What ``ip route`` says there, a line each."""
-    asked = ["ip", "-n", host.name, "route"]
-    return subprocess.run(asked, check=True, capture_output=True, text=True).stdout
+    """Output of ``ip route`` on a host."""
+    command = ["ip", "-n", host.name, "route"]
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
 
 
 def _ip(*arguments: str) -> None:

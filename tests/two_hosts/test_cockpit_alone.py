@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The page on a machine without any network: cockpit, graph and browser have nothing but the loopback."""
+"""The cockpit on a machine without network: cockpit, ROS graph and browser have only the loopback."""
 
 import os
 import sys
@@ -23,22 +23,22 @@ IS_DRAWN = "[...document.querySelectorAll('canvas')].some((one) => one.width > 1
 
 @unittest.skipUnless(os.geteuid() == 0, "only root can make network namespaces")
 class CockpitAloneTest(unittest.TestCase):
-    def test_the_page_works_where_no_route_leads_anywhere(self):
+    def test_the_cockpit_works_without_any_route(self):
         with tempfile.TemporaryDirectory() as folder, IsolatedHost() as isolated:
             isolated.start(isolated, "rosmaster", "--core")
             os.environ.update(isolated.environment(isolated))
-            isolated.enter()  # and so do the cockpit and the browser, its children
+            isolated.enter()  # with its children, the cockpit and the browser
             self.assertEqual(routes_of(isolated), "")
             wait_until("a master", rosgraph.is_master_online, START_SECONDS)
             isolated.start(isolated, sys.executable, str(STAGE))
             cockpit = CockpitProcess(FREE_PORT, Path(folder) / "cockpit.log", tool="topics")
             try:
                 with Browser() as browser:
-                    self.look_at(browser.open(cockpit.url), cockpit.url.partition("/?")[0])
+                    self.check_page(browser.open(cockpit.url), cockpit.url.partition("/?")[0])
             finally:
                 cockpit.close()
 
-    def look_at(self, page, own):
+    def check_page(self, page, own):
         page.wait_for("View", "Drive", "Tools", "/camera/image", "std_msgs/Float64", seconds=START_SECONDS)
         page.choose("Watch", "/sine")
         page.wait_for("data: ")

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The graph on two hosts: simulator and robot on one, the rest on the other; then the cable is cut."""
+"""The graph on two hosts: simulator and robot on one, the rest on the other, with a link that fails."""
 
 import math
 import os
@@ -19,9 +19,9 @@ from std_msgs.msg import String
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 ON_DESK = ("/map_server", "/amcl", "/move_base", "/pick_objects", "/add_markers")
-# The robot's time-out of commands, simulated seconds, and what it takes to brake and to tell.
+# Time-out of velocity commands, and time to brake and to publish it, simulated [s].
 COMMAND_SECONDS, BRAKING_SECONDS = 0.6, 0.6
-CUT_SECONDS = 5.0
+DISCONNECTED_SECONDS = 5.0
 STANDING, DRIVING = 0.01, 0.1  # m/s
 START_SECONDS, RESTART_SECONDS, ERRAND_SECONDS = 60.0, 40.0, 90.0
 
@@ -29,18 +29,18 @@ START_SECONDS, RESTART_SECONDS, ERRAND_SECONDS = 60.0, 40.0, 90.0
 @unittest.skipUnless(os.geteuid() == 0, "only root can make network namespaces")
 class TwoHostsTest(unittest.TestCase):
     def setUp(self):
-        self._news = threading.Condition()
-        self._seen, self._states = [], []
+        self._condition = threading.Condition()
+        self._truths, self._states = [], []
 
-    def test_an_errand_survives_a_cut_cable(self):
+    def test_an_errand_survives_a_disconnected_link(self):
         with NetworkLink() as link:
             link.robot.start(link.robot, "rosmaster", "--core")
             self.enter(link)
             world = f"world_file:={ROOT / 'map' / 'home.world'}"
             link.robot.start(link.robot, "roslaunch", "home_service", "world.launch", world)
-            self.listen()
-            # The robot's side first: it says whose run this is, and that time is simulated.
-            self.wait_until(lambda: self._seen, START_SECONDS, "no simulator")
+            self.subscribe()
+            # The robot's side first: it sets the run id and use_sim_time.
+            self.wait_until(lambda: self._truths, START_SECONDS, "no simulator")
             files = (f"map_file:={ROOT / 'map' / 'home.yaml'}", f"zones_file:={HERE / 'zones.yaml'}")
             link.desk.start(link.robot, "roslaunch", "home_service", "desk.launch", *files)
             try:
@@ -49,12 +49,12 @@ class TwoHostsTest(unittest.TestCase):
                 rospy.signal_shutdown("done")
 
     def enter(self, link):
-        """From here on this process is on the robot's host."""
+        """Move this process to the robot's host."""
         os.environ.update(link.robot.environment(link.robot))
         link.robot.enter()
         self.wait_until(rosgraph.is_master_online, START_SECONDS, "no master")
 
-    def listen(self):
+    def subscribe(self):
         rospy.init_node("test_two_hosts", disable_signals=True)
         rospy.Subscriber("base_pose_ground_truth", Odometry, self.keep_truth, queue_size=10)
         rospy.Subscriber("pick_objects/state", String, self.keep_state, queue_size=10)
@@ -66,42 +66,42 @@ class TwoHostsTest(unittest.TestCase):
         self.assertEqual(self.host_of("/sim_bridge"), link.robot.address)
 
         link.disconnect()
-        cut_at = self.now()
-        self.wait_until(lambda: self.standing_since(cut_at), 10.0, "the robot drives on without commands")
-        stopped_after = self.standing_since(cut_at) - cut_at
-        time.sleep(CUT_SECONDS)
+        disconnected_at = self.now()
+        self.wait_until(lambda: self.standing_since(disconnected_at), 10.0, "the robot does not stop")
+        stopped_after = self.standing_since(disconnected_at) - disconnected_at
+        time.sleep(DISCONNECTED_SECONDS)
         self.assertLess(self.speed(), STANDING)
-        print(f"stopped {stopped_after:.2f} s of simulated time after the cut")
+        print(f"stopped {stopped_after:.2f} s of simulated time after the disconnection")
         self.assertLess(stopped_after, COMMAND_SECONDS + BRAKING_SECONDS)
 
         link.reconnect()
         reconnected_at = time.monotonic()
-        self.wait_until(lambda: self.speed() > DRIVING, RESTART_SECONDS, "the robot does not drive on")
-        print(f"driving again {time.monotonic() - reconnected_at:.1f} s after the cable was mended")
+        self.wait_until(lambda: self.speed() > DRIVING, RESTART_SECONDS, "the robot does not continue")
+        print(f"driving again {time.monotonic() - reconnected_at:.1f} s after the link was reconnected")
         ends = ("delivered", "failed")
         self.wait_until(lambda: self._states[-1:] and self._states[-1] in ends, ERRAND_SECONDS, "no end")
         self.assertEqual(self._states[-1], "delivered")
 
     def keep_truth(self, message):
-        with self._news:
-            self._seen.append(message)
-            self._news.notify_all()
+        with self._condition:
+            self._truths.append(message)
+            self._condition.notify_all()
 
     def keep_state(self, message):
-        with self._news:
+        with self._condition:
             self._states.append(message.data)
-            self._news.notify_all()
+            self._condition.notify_all()
 
     def speed(self):
-        return speed_in(self._seen[-1]) if self._seen else 0.0
+        return speed_in(self._truths[-1]) if self._truths else 0.0
 
     def standing_since(self, stamp):
-        """The first moment from a stamp on at which the robot stands, also seconds; None if there is none."""
-        standing = (stamp_of(seen) for seen in self._seen if speed_in(seen) < STANDING)
+        """Stamp of the first standstill from a stamp on [s]; None if there is none."""
+        standing = (stamp_of(truth) for truth in self._truths if speed_in(truth) < STANDING)
         return next((each for each in standing if each >= stamp), None)
 
     def now(self):
-        return stamp_of(self._seen[-1])
+        return stamp_of(self._truths[-1])
 
     def host_of(self, node):
         uri = rosgraph.Master("/test_two_hosts").lookupNode(node)
@@ -109,10 +109,10 @@ class TwoHostsTest(unittest.TestCase):
 
     def wait_until(self, is_so, seconds, what):
         deadline = time.monotonic() + seconds
-        with self._news:
+        with self._condition:
             while not is_so():
                 self.assertLess(time.monotonic(), deadline, f"{what}; states {self._states}")
-                self._news.wait(0.1)
+                self._condition.wait(0.1)
 
 
 def stamp_of(truth):
@@ -120,7 +120,7 @@ def stamp_of(truth):
 
 
 def speed_in(truth):
-    """Of the robot: m/s, and its turning as that of its rim."""
+    """Speed of the robot [m/s]; rotation counts as the speed of its rim."""
     twist = truth.twist.twist
     return math.hypot(twist.linear.x, twist.linear.y) + 0.18 * abs(twist.angular.z)
 
