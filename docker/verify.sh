@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # Usage: sudo ./docker/verify.sh [options]
 #
-# Builds the image without a container engine's daemon, from an empty cache, and proves it: the mission as a user who
+# Builds the image without a container engine's daemon, from an empty cache, and tests it: the mission as a user who
 # is not root, once more without network and with nothing writable but the run folder, an interrupted one, and the
-# tests. Needs root, buildah, and debootstrap for the base. Takes half an hour; prints each step with the time since the start.
-# Exit code: 0 all proven, 1 failure, 2 bad usage.
+# tests. Needs root, buildah, and debootstrap for the base. Takes half an hour; prints each step with the elapsed time.
+# Exit code: 0 all passed, 1 failure, 2 bad usage.
 #
 #   --base TAR       root file system of Debian 13 to build on (default: made with debootstrap)
 #   --ros-tests NAMES
@@ -169,4 +169,4 @@ if [[ -n $rviz ]]; then
 fi
 print_line "What the runs left, and to whom it belongs"
 ls -ln "$work"/runs/*/
-print_line "All proven"
+print_line "All passed"
