@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Nodes of a run are killed in turn: they come back, the run goes on, and the result tells of it."""
+"""Nodes of a run are killed in turn: they are respawned, the run continues, and the result lists them."""
 
 import json
 import os
@@ -36,7 +36,7 @@ class ComingBackTest(unittest.TestCase):
                 folder,
             )
             try:
-                wait_until("the robot to set out", lambda: run.has_said("driving to"), 60.0)
+                wait_until("the robot to set out", lambda: run.has_printed("driving to"), 60.0)
                 for node in NODES:
                     run.kill(node)
                 code = run.process.wait(RUN_SECONDS)
@@ -53,7 +53,7 @@ class ComingBackTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             run = Run("map_home", "--seed", "61", "--output", folder)
             try:
-                wait_until("the explorer to begin", lambda: run.has_said("exploring, "), 60.0)
+                wait_until("the explorer to begin", lambda: run.has_printed("exploring, "), 60.0)
                 for node in MAPPING_NODES:
                     time.sleep(APART_EXPLORING_SECONDS)
                     run.kill(node)
@@ -72,18 +72,18 @@ class ComingBackTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             run = Run("home_service", "--output", folder)
             try:
-                wait_until("the robot to set out", lambda: run.has_said("driving to"), 60.0)
+                wait_until("the robot to set out", lambda: run.has_printed("driving to"), 60.0)
                 for _ in range(4):
                     run.kill("map_server")
                 code = run.process.wait(RUN_SECONDS)
             finally:
                 run.end()
         self.assertEqual(code, 1)
-        self.assertTrue(run.has_said("FAILURE: map_server: was ended by SIGKILL, after 3 restarts"))
+        self.assertTrue(run.has_printed("FAILURE: map_server: was ended by SIGKILL, after 3 restarts"))
 
 
 class Run:
-    """A command, what it says, and its nodes; at a steady pace, so that it is not over too soon."""
+    """A command, its output and its nodes; run at a moderate speed, so that it is not over too soon."""
 
     def __init__(self, command, *options):
         self.process = subprocess.Popen(
@@ -94,16 +94,16 @@ class Run:
             stderr=subprocess.STDOUT,
             text=True,
         )
-        self.said = []
-        threading.Thread(target=lambda: self.said.extend(self.process.stdout), daemon=True).start()
+        self.lines = []
+        threading.Thread(target=lambda: self.lines.extend(self.process.stdout), daemon=True).start()
 
-    def has_said(self, text):
-        return any(text in line for line in list(self.said))
+    def has_printed(self, text):
+        return any(text in line for line in list(self.lines))
 
     def end(self):
-        """Whatever has become of it; shows what it has said."""
+        """Kill the command, if it is still running, and print its output."""
         self.process.kill()
-        print("".join(self.said))
+        print("".join(self.lines))
 
     def kill(self, node):
         """Ends the node with SIGKILL once it is there, and gives the others a moment to notice."""

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A second robot follows the first on its errand, also when that comes past it on its way back."""
+"""A second robot follows the first on its errand, also when the first passes it on the return."""
 
 import json
 import subprocess

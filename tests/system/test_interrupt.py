@@ -18,7 +18,7 @@ from waiting import wait_until
 
 SCRIPT = Path(__file__).resolve().parents[2] / "scripts/home_service.sh"
 MOMENTS = (0.1, 0.6, 1.5, 3.0, 6.0)
-# Those of an end are far from what it takes: they only tell it from none.
+# Time-outs of an end are much longer than it takes, so that it is distinguished from none.
 START_SECONDS, EXIT_SECONDS, LEFT_SECONDS = 60.0, 30.0, 30.0
 # Killed by SIGKILL so often, so many seconds after roslaunch has begun, which starts the nodes in these.
 STARTS, STARTING_SECONDS = 12, (0.0, 2.5)
@@ -55,15 +55,15 @@ class InterruptTest(unittest.TestCase):
                 stderr=subprocess.STDOUT,
                 text=True,
             )
-            said = []
+            lines = []
             for line in run.stdout:
-                said.append(line)
+                lines.append(line)
                 if "Ctrl-C closes it" in line:
                     run.send_signal(signal.SIGINT)
             code = run.wait(EXIT_SECONDS)
-        self.assertEqual(code, 0, "".join(said))
-        self.assertIn("SUCCESS: ended by Ctrl-C", "".join(said))
-        self.assertNotIn("error", "".join(said))
+        self.assertEqual(code, 0, "".join(lines))
+        self.assertIn("SUCCESS: ended by Ctrl-C", "".join(lines))
+        self.assertNotIn("error", "".join(lines))
         self.assertEqual(processes_with(mark), [])
 
     def test_a_terminal_that_closes_ends_the_run(self):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A run whose simulator is killed says so, and ends."""
+"""A run whose simulator is killed ends with that reason."""
 
 import json
 import tempfile
@@ -19,12 +19,12 @@ REASON = "sim_bridge: was ended by SIGKILL"
 
 class KilledTest(unittest.TestCase):
     def test_a_mission_whose_simulator_is_killed_fails_with_that_reason(self):
-        self._assert_told("home_service.sh", "pick_objects: driving to", f"FAILURE: {REASON}")
+        self._assert_reported("home_service.sh", "pick_objects: driving to", f"FAILURE: {REASON}")
 
     def test_a_map_is_not_waited_for_if_slam_was_killed(self):
-        self._assert_told("map_home.sh", " x real time", f"error: {REASON}")
+        self._assert_reported("map_home.sh", " x real time", f"error: {REASON}")
 
-    def _assert_told(self, script, progress, verdict):
+    def _assert_reported(self, script, progress, verdict):
         mark, environment = marked_environment()
         command = [ROOT / "scripts" / script, "--speed", "4", "--output"]
         with tempfile.TemporaryDirectory() as parent:

@@ -20,7 +20,7 @@ class RepeatedTest(unittest.TestCase):
         self._repeats("home_service.sh", "--seed", "5")
 
     def test_a_map_is_repeatable_under_load(self):
-        """The robot explores by itself; a small world, so that it is soon known."""
+        """Exploration of a small world, which takes little time."""
         self._repeats("map_home.sh", "--seed", "5", "--world", str(ROOT / "tests/system/two_rooms.world"))
 
     def _repeats(self, *command):

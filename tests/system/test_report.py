@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What a run leaves in its folder, and that a full disk neither stops it nor stays untold."""
+"""Files in a run folder; a full disk does not stop the run and is reported."""
 
 import contextlib
 import json
@@ -23,7 +23,7 @@ SCHEMA = ROOT / "src/home_service/config/result.schema.json"
 FILES = {"report.html", "run.png", "record.json", "result.json", "trace.txt", "log"}
 FILES |= {f"trajectory_{name}.tum" for name in ("true", "estimated", "odometry")}
 FULL = 100 * 1024  # room for logs and little more, bytes
-FULL_DISK = "File too large"  # as such a limit is told, by the words of the system
+FULL_DISK = "File too large"  # error of the system for such a limit
 RUN_SECONDS = 100.0
 
 
@@ -44,8 +44,8 @@ class ReportTest(unittest.TestCase):
         self.assertGreater(len(record.goals), 0)
         self.assertGreater(len(record.plans), 0)
         self.assertIsNotNone(record.grid)
-        moments = set(true[:, 0])
-        self.assertGreater(np.mean([stamp in moments for stamp in estimated[:, 0]]), 0.9)
+        stamps = set(true[:, 0])
+        self.assertGreater(np.mean([stamp in stamps for stamp in estimated[:, 0]]), 0.9)
 
     def test_a_run_that_fails_leaves_a_result_as_documented_too(self):
         with tempfile.TemporaryDirectory() as parent:
@@ -72,18 +72,18 @@ class ReportTest(unittest.TestCase):
                 _fill_the_disk_of(mark)
                 code = run.process.wait(RUN_SECONDS)
             written = [path.name for path in next(Path(parent).iterdir()).iterdir()]
-        said = "".join(run.lines)
-        print(said)
+        output = "".join(run.lines)
+        print(output)
         self.assertEqual(code, 1)
         self.assertRegex(
-            said, r"(?m)^FAILURE: result.json: cannot be written \(File too large\); .* goals reached"
+            output, r"(?m)^FAILURE: result.json: cannot be written \(File too large\); .* goals reached"
         )
         about_the_disk = [line for line in run.lines if FULL_DISK in line]
-        # amcl says so of its own if it wants to keep something meanwhile.
+        # amcl logs it, too, if it writes a checkpoint meanwhile.
         by_amcl = [line for line in about_the_disk if line.startswith("amcl: warning: nothing is kept")]
-        self.assertLessEqual(len(by_amcl), 1, said)
-        self.assertLessEqual(len(about_the_disk) - len(by_amcl), 2, said)
-        self.assertNotIn("Traceback", said)
+        self.assertLessEqual(len(by_amcl), 1, output)
+        self.assertLessEqual(len(about_the_disk) - len(by_amcl), 2, output)
+        self.assertNotIn("Traceback", output)
         self.assertEqual(written, ["log"])
         self.assertEqual(processes_with(mark), [])
 

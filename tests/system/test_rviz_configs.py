@@ -21,8 +21,8 @@ class RvizConfigTest(unittest.TestCase):
             shown, sent = topics_of(FOLDER / f"{name}.rviz")
             print(f"{name}: {len(shown)} topics shown, {len(sent)} sent")
             self.assertGreater(len(shown), 5)
-            self._wait_for(shown, 0, f"{name}.rviz shows what nobody publishes")
-            self._wait_for(sent - {SENDING}, 1, f"{name}.rviz sends what nobody hears")
+            self._wait_for(shown, 0, f"{name}.rviz shows topics without publishers")
+            self._wait_for(sent - {SENDING}, 1, f"{name}.rviz publishes topics without subscribers")
 
     def test_the_model_of_the_robot_is_there(self):
         self.assertIn("<robot", rospy.get_param("/robot_description"))

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs that cannot go on: each says why, and ends with that for its reason."""
+"""Runs that cannot continue end with the reason."""
 
 import os
 import re
@@ -21,23 +21,23 @@ LOST_ODOMETRY = "faults: [{kind: odometry_stopped, start: 8.0}]\n"
 
 class StandstillTest(unittest.TestCase):
     def test_a_pause_without_end_is_reported(self):
-        code, said = self.run_to_its_end("--speed", "2", "--timeout", str(TIMEOUT), do=self.pause)
+        code, output = self.run_to_its_end("--speed", "2", "--timeout", str(TIMEOUT), do=self.pause)
         self.assertEqual(code, 1)
-        self.assertRegex(said, r"time stands still at [\d.]+ s: the simulation is paused")
-        self.assertRegex(said, r"FAILURE: not done within .*; simulated time stands still at")
+        self.assertRegex(output, r"time stands still at [\d.]+ s: the simulation is paused")
+        self.assertRegex(output, r"FAILURE: not done within .*; simulated time stands still at")
 
     def test_a_stopped_node_is_named_when_time_stops_and_at_the_end(self):
-        code, said = self.run_to_its_end("--timeout", "25", do=lambda _: self.stop("move_base"))
+        code, output = self.run_to_its_end("--timeout", "25", do=lambda _: self.stop("move_base"))
         self.assertEqual(code, 1)
-        self.assertRegex(said, r"time stands still at [\d.]+ s: the simulator waits for move_base")
-        self.assertRegex(said, r"FAILURE: not done within .*; no answer of move_base")
+        self.assertRegex(output, r"time stands still at [\d.]+ s: the simulator waits for move_base")
+        self.assertRegex(output, r"FAILURE: not done within .*; no answer of move_base")
         self.assertEqual(processes_with(MARK), [])
 
     def test_a_stopped_simulator_is_named(self):
-        code, said = self.run_to_its_end("--timeout", "25", do=lambda _: self.stop("sim_bridge"))
+        code, output = self.run_to_its_end("--timeout", "25", do=lambda _: self.stop("sim_bridge"))
         self.assertEqual(code, 1)
-        self.assertRegex(said, r"time stands still at [\d.]+ s: the simulator does not answer")
-        self.assertRegex(said, r"FAILURE: not done within .*; no answer of sim_bridge")
+        self.assertRegex(output, r"time stands still at [\d.]+ s: the simulator does not answer")
+        self.assertRegex(output, r"FAILURE: not done within .*; no answer of sim_bridge")
         self.assertEqual(processes_with(MARK), [])
 
     def test_odometry_that_stops_for_good_ends_the_run_early(self):
@@ -45,13 +45,13 @@ class StandstillTest(unittest.TestCase):
         with tempfile.NamedTemporaryFile("w", suffix=".yaml") as faults:
             faults.write(LOST_ODOMETRY)
             faults.flush()
-            code, said = self.run_to_its_end("--faults", faults.name)
+            code, output = self.run_to_its_end("--faults", faults.name)
         self.assertEqual(code, 1)
-        self.assertRegex(said, r"FAILURE: place pickup not reached .*odometry: none for [\d.]+ s")
-        self.assertNotIn("no progress of", said, "or amcl, without odometry, would hold up time")
+        self.assertRegex(output, r"FAILURE: place pickup not reached .*odometry: none for [\d.]+ s")
+        self.assertNotIn("no progress of", output, "or amcl, without odometry, would hold up time")
 
     def run_to_its_end(self, *options, do=lambda folder: None):
-        """Exit code and what was said; ``do`` is done with the folder of runs when the robot sets out."""
+        """Exit code and what was output; ``do`` is done with the folder of runs when the robot sets out."""
         with tempfile.TemporaryDirectory() as folder:
             run = subprocess.Popen(
                 [str(SCRIPT), "--output", folder, *options],
@@ -61,18 +61,18 @@ class StandstillTest(unittest.TestCase):
                 stderr=subprocess.STDOUT,
                 text=True,
             )
-            said = []
-            hearing = threading.Thread(target=lambda: said.extend(run.stdout), daemon=True)
-            hearing.start()
+            output = []
+            reader = threading.Thread(target=lambda: output.extend(run.stdout), daemon=True)
+            reader.start()
             try:
-                wait_until("the robot to set out", lambda: "driving to" in "".join(said), TIMEOUT)
+                wait_until("the robot to set out", lambda: "driving to" in "".join(output), TIMEOUT)
                 do(Path(folder))
                 code = run.wait(RUN_SECONDS)
             finally:
                 run.kill()
-            hearing.join(TIMEOUT)
-        print("".join(said))
-        return code, "".join(said)
+            reader.join(TIMEOUT)
+        print("".join(output))
+        return code, "".join(output)
 
     @staticmethod
     def stop(node):
@@ -83,7 +83,7 @@ class StandstillTest(unittest.TestCase):
 
     @staticmethod
     def pause(folder):
-        """By the service, at the master of the run, which its log tells."""
+        """By the service, at the master of the run, as written in its log."""
         log = next(folder.glob("*/log/roslaunch.log")).read_text()
         environment = {**os.environ, "ROS_MASTER_URI": re.search(r"ROS_MASTER_URI=(http://[\d.:]+)", log)[1]}
         command = ["rosservice", "call", "/gazebo/pause_physics"]

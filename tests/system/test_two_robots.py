@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Two robots drive to two goals at once in one world, and do not hear each other."""
+"""Two robots drive to two goals at once in one world, and do not receive each other's topics."""
 
 import unittest
 
