@@ -1,4 +1,4 @@
-"""Who subscribes while a marker changes gets whole markers, the latest last."""
+"""A subscriber that connects while a marker changes receives complete markers, the latest last."""
 
 import io
 import struct

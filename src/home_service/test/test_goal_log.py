@@ -1,4 +1,4 @@
-"""Goals given by hand."""
+"""Log of goals that are sent by hand."""
 
 from home_service.judging.goal_log import GoalLog
 from planar import Pose2

@@ -1,4 +1,4 @@
-"""A graph that changes while it is examined."""
+"""Inspection of a graph that changes meanwhile."""
 
 from types import SimpleNamespace
 

@@ -1,4 +1,4 @@
-"""A package laid out for a new plugin is one that works as it is."""
+"""A generated plugin package works without changes."""
 
 import importlib
 import runpy

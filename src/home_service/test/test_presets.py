@@ -1,4 +1,4 @@
-"""Each robot drives from one room into the next with the preset made for it, and touches nothing."""
+"""Each robot drives into the next room with its preset, without a collision."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Runs that cannot be made again by reproduce.sh."""
+"""Runs that reproduce.sh cannot repeat."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""What is written of a run follows the schema of result.json, whoever found it."""
+"""All fields of result.json follow its schema."""
 
 import json
 from pathlib import Path

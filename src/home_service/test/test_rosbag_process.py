@@ -1,4 +1,4 @@
-"""How the recorder of bags ends."""
+"""End of the bag recorder."""
 
 import signal
 import time

@@ -1,4 +1,4 @@
-"""How a run ends, whatever cannot be written."""
+"""End of a run whose files cannot be written."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""What is kept of a run for its report: all of a mission, and no more than so much of a run that serves."""
+"""The recorder keeps a mission completely, and a bounded number of events of a long run."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Traces of runs, and where two of them part."""
+"""Traces of runs and their first difference."""
 
 import errno
 import tempfile

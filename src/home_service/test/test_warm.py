@@ -1,4 +1,4 @@
-"""What the set-up compiles, so that no node does while a robot waits."""
+"""Kernels are compiled during the set-up."""
 
 from home_service import warm
 from move_base_lite.control import LOCAL_PLANNERS

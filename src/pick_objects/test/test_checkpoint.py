@@ -1,4 +1,4 @@
-"""An errand that was cut short goes on where it was."""
+"""An interrupted errand resumes from its checkpoint."""
 
 import json
 

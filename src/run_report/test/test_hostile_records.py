@@ -1,4 +1,4 @@
-"""Records and results of other shapes than a run leaves."""
+"""Malformed records and results are refused."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""What is guarded ends with who has started it, whatever it is at."""
+"""A guarded command ends with its parent, at any moment."""
 
 import os
 import random

@@ -32,7 +32,7 @@ CONNECTION_LOG_FILE = "tcpros_base.py"
 # Ground-truth messages that are kept to look up the pose at a stamp.
 TRUTH_HISTORY = 500
 LOGGED_NODES = ("/pick_objects", "/add_markers")
-# Of simulated and of wall time, after the end of a mission: what has not been reported by then does not come.
+# Simulated and wall-clock time after the end of a mission in which further messages are waited for [s].
 GRACE_SECONDS = 10.0
 
 
