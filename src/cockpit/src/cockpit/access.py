@@ -32,6 +32,14 @@ class AccessPolicy:
     The token is in the URL that the terminal prints; the first request exchanges it for a cookie and is
     redirected to a URL without it. The Host header reveals a site whose name resolves to this machine (DNS
     rebinding), the Origin header a page of another site.
+
+    Args:
+        port: Port of the page; part of the cookie's name, since browsers share cookies between ports.
+        hosts: Further names and addresses of this machine.
+        token: Token of the URL; None for a random one.
+
+    Attributes:
+        token: Token of the URL.
     """
 
     def __init__(self, port: int, hosts: Tuple[str, ...] = LOOPBACK, token: Optional[str] = None):
@@ -47,7 +55,7 @@ class AccessPolicy:
         """Decide on a request.
 
         Args:
-            target: Path and query.
+            target: Path and query of the request.
             host: Host header.
             origin: Origin header; None if absent. Browsers always send it for a web socket.
             cookies: Cookie header.

@@ -11,7 +11,11 @@ END_SECONDS = 5.0
 
 
 class ChildProgram:
-    """A child process that receives SIGINT when it is ended or when this process exits."""
+    """A child process that receives SIGINT when it is ended or when this process exits.
+
+    Args:
+        command: Program and arguments.
+    """
 
     def __init__(self, command: Sequence[str]):
         self._process = subprocess.Popen(

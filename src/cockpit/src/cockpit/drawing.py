@@ -15,8 +15,8 @@ class PointCloudShape:
     """A point cloud.
 
     Attributes:
-        points: (N, 3) [m].
-        colours: (N, 3) uint8, or one colour for all.
+        points: Points (N, 3) [m].
+        colours: Colours (N, 3), uint8, or one colour for all.
         size: Diameter of a point [m].
     """
 
@@ -30,8 +30,8 @@ class LineSegments:
     """Line segments.
 
     Attributes:
-        segments: (N, 2, 3) [m].
-        colours: (N, 2, 3) uint8, or one colour for all.
+        segments: Ends (N, 2, 3) of the segments [m].
+        colours: Colours (N, 2, 3) of the ends, uint8, or one colour for all.
         width: Line width [pixels].
     """
 
@@ -45,10 +45,10 @@ class TriangleMesh:
     """A triangle mesh.
 
     Attributes:
-        vertices: (N, 3) [m].
-        triangles: (M, 3) indices of vertices.
+        vertices: Vertices (N, 3) [m].
+        triangles: Vertex indices (M, 3).
         colour: Colour of the mesh.
-        opacity: 0 to 1.
+        opacity: Opacity, 0 to 1.
         is_smooth: Whether normals are interpolated.
     """
 
@@ -64,10 +64,10 @@ class FloorImage:
     """An image that lies in the xy plane.
 
     Attributes:
-        picture: (rows, columns, 4) uint8, the first row at the top.
+        picture: Image (rows, columns, 4), uint8, the first row at the top.
         width: Size along x [m].
         height: Size along y [m].
-        pose: (4, 4) pose of the lower left corner.
+        pose: Pose (4, 4) of the lower left corner.
     """
 
     picture: np.ndarray
@@ -78,13 +78,25 @@ class FloorImage:
 
 @dataclass(frozen=True, eq=False)
 class Label:
+    """A text at a position.
+
+    Attributes:
+        text: The text.
+        position: Position (3,) [m].
+    """
+
     text: str
     position: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
 class FrameAxes:
-    """Coordinate axes at ``poses`` (N, 4, 4), each ``length`` long [m]."""
+    """Coordinate axes.
+
+    Attributes:
+        poses: Poses (N, 4, 4) of the axes.
+        length: Length of each axis [m].
+    """
 
     poses: np.ndarray
     length: float = 0.3
@@ -92,7 +104,11 @@ class FrameAxes:
 
 @dataclass(frozen=True, eq=False)
 class CameraImage:
-    """A camera image (rows, columns, 3) uint8, shown in a window beside the world."""
+    """A camera image, shown in a window beside the world.
+
+    Attributes:
+        picture: Image (rows, columns, 3), uint8.
+    """
 
     picture: np.ndarray
 
@@ -107,8 +123,8 @@ class PlacedShape:
     Attributes:
         name: Name within the layer.
         frame: Frame id.
-        shape: What is drawn.
-        pose: (4, 4) pose of the shape in the frame; None for the identity.
+        shape: The shape to draw.
+        pose: Pose (4, 4) of the shape in the frame; None for the identity.
         seconds: Lifetime [s].
         stamp: ROS time at which the frame's pose is taken [s]; None to follow the frame.
     """

@@ -18,7 +18,11 @@ READING_SECONDS = 60.0
 
 @lru_cache(maxsize=None)
 def fault_kinds() -> Dict[str, FaultKindInfo]:
-    """Return the kinds by name, in the simulator's order; cached. Raises CockpitError."""
+    """Return the kinds by name, in the simulator's order; cached.
+
+    Raises:
+        CockpitError: The child process failed.
+    """
     command = [sys.executable, "-m", __name__]
     try:
         output = subprocess.run(

@@ -47,7 +47,15 @@ def wxyz_of(pose: np.ndarray) -> Tuple[float, float, float, float]:
 
 
 def pose_from_message(position: Any, orientation: Any) -> Optional[np.ndarray]:
-    """Convert a geometry_msgs Point or Vector3 and a Quaternion to a pose (4, 4), or None if invalid."""
+    """Convert a position and an orientation to a pose.
+
+    Args:
+        position: geometry_msgs Point or Vector3.
+        orientation: geometry_msgs Quaternion.
+
+    Returns:
+        The pose (4, 4); None if it is invalid (see ``pose_matrix``).
+    """
     p, q = position, orientation
     return pose_matrix((p.x, p.y, p.z), (q.x, q.y, q.z, q.w))
 
@@ -87,6 +95,12 @@ class FrameTree:
         self._past: Dict[str, Deque[Transform]] = {}
 
     def put(self, child: str, transform: Transform) -> None:
+        """Store a transform.
+
+        Args:
+            child: Child frame.
+            transform: Its pose in the parent frame; older transforms are dropped when its stamp jumps back.
+        """
         child = child.lstrip("/")
         past = self._past.setdefault(child, deque(maxlen=MOST_KEPT))
         if past and transform.stamp < past[-1].stamp:  # time has jumped back
@@ -113,6 +127,7 @@ class FrameTree:
         return sorted(parents | set(self._transforms))
 
     def roots(self) -> List[str]:
+        """Return the frames without a parent."""
         return [name for name in self.names() if name not in self._transforms]
 
     def pose(self, frame: str, fixed: str, at: Optional[float] = None) -> Optional[np.ndarray]:

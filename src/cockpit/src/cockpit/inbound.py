@@ -26,7 +26,12 @@ KINDS = frozenset(
 
 
 class RateLimiter:
-    """Token bucket: at most ``burst`` messages at once and ``rate`` per second."""
+    """Token bucket that limits the message rate.
+
+    Args:
+        rate: Long-term limit [messages/s].
+        burst: Number of messages that are allowed at once.
+    """
 
     def __init__(self, rate: float = MESSAGES_PER_SECOND, burst: float = BURST):
         self._rate, self._burst = rate, burst
@@ -34,7 +39,11 @@ class RateLimiter:
         self._at = -math.inf
 
     def allow(self, now: float) -> bool:
-        """Return whether a message is allowed at ``now`` [s, steady clock]."""
+        """Return whether a message is allowed.
+
+        Args:
+            now: Steady-clock time [s].
+        """
         self._left = min(self._burst, self._left + (now - self._at) * self._rate)
         self._at = now
         if self._left < 1.0:
@@ -44,7 +53,11 @@ class RateLimiter:
 
 
 def check(message: Any) -> None:
-    """Check a decoded message. Raises RefusedError."""
+    """Check a decoded message.
+
+    Raises:
+        RefusedError: The page never sends such a message.
+    """
     if not isinstance(message, Mapping) or message.get("type") not in KINDS:
         raise RefusedError("not a message that the page sends")
     updates = message.get("updates", {})

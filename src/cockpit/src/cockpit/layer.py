@@ -38,6 +38,7 @@ class DisplayLayer:
     needs_all: bool = False
 
     def is_shown_at_first(self, topic: str) -> bool:
+        """Return whether a topic is enabled at first."""
         return topic.endswith(self.shown) if self.shown else False
 
 

@@ -33,7 +33,7 @@ class ExplorerState(enum.Enum):
 
 @dataclass(frozen=True)
 class SendGoal:
-    """Order: send a goal, which replaces any earlier one.
+    """Order to send a goal, which replaces any earlier one.
 
     Attributes:
         pose: Goal pose in the map frame.
@@ -80,12 +80,12 @@ class Explorer:
 
     @property
     def frontiers(self) -> List[Frontier]:
-        """The frontiers that have a viewpoint."""
+        """Frontiers that have a viewpoint."""
         return self._finder.frontiers
 
     @property
     def unreachable(self) -> List[Frontier]:
-        """The frontiers that have none, or failed too often."""
+        """Frontiers without a viewpoint, or that failed too often."""
         return self._finder.unreachable
 
     @property

@@ -22,7 +22,7 @@ class Frontier:
     """Neighbouring free cells at the border of unknown space.
 
     Attributes:
-        points_xy: (N, 2) cell centres in the map frame [m].
+        points_xy: Cell centres (N, 2) in the map frame [m].
         size: Number of cells times the resolution [m].
     """
 
@@ -36,7 +36,11 @@ class Frontier:
         return self.points_xy[np.argmin((offsets**2).sum(axis=1))]
 
     def distance_to(self, point_xy: np.ndarray) -> float:
-        """Distance from a point (2,) to the nearest point of the frontier [m]."""
+        """Return the distance from a point to the nearest point of the frontier [m].
+
+        Args:
+            point_xy: The point (2,) in the map frame [m].
+        """
         return float(np.sqrt(((self.points_xy - point_xy) ** 2).sum(axis=1).min()))
 
 
@@ -44,6 +48,12 @@ def known_part(grid: OccupancyGrid) -> OccupancyGrid:
     """Crop a map to its known cells plus one unknown cell on each side, and threshold the occupancy.
 
     A SLAM map may be much larger than its known part: gmapping starts with 200 x 200 m.
+
+    Args:
+        grid: Map with occupancies from 0 to 100 %.
+
+    Returns:
+        A map of free, occupied and unknown cells.
     """
     rows, cols = (np.flatnonzero((grid.cells != UNKNOWN).any(axis=axis)) for axis in (1, 0))
     if len(rows) == 0:
@@ -59,7 +69,7 @@ def known_part(grid: OccupancyGrid) -> OccupancyGrid:
 
 
 def find_frontiers(grid: OccupancyGrid, min_size: float, max_size: float) -> List[Frontier]:
-    """Find the frontiers of a map.
+    """Find the frontiers of a map (Yamauchi, 1997).
 
     Args:
         grid: Free, occupied and unknown cells (see known_part); space outside of it is unknown.

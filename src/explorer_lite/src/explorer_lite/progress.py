@@ -24,15 +24,24 @@ class GoalProgressChecker:
         self._refused_here = 0
 
     def restart(self, now: float) -> None:
-        """Start with a new goal."""
+        """Reset the checker for a new goal.
+
+        Args:
+            now: Time [s].
+        """
         self._nearest, self._progress_at = math.inf, now
 
     def on_goal_moved(self) -> None:
-        """Take the next distance as the reference: the goal has moved, not the robot."""
+        """Use the next distance as the reference: the goal has moved, not the robot."""
         self._nearest = math.inf
 
     def is_stuck(self, now: float, distance: float) -> bool:
-        """Whether the robot, at ``distance`` from its goal [m], has come no nearer within the timeout."""
+        """Return whether the robot has come no nearer to its goal within the timeout.
+
+        Args:
+            now: Time [s].
+            distance: Distance from the robot to its goal [m].
+        """
         if distance < self._nearest - PROGRESS_DISTANCE:
             if math.isfinite(self._nearest):
                 self._progress_at = now

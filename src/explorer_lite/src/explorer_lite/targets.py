@@ -23,9 +23,9 @@ class ReachableSpace:
     """Path lengths from the robot to the cells of the map.
 
     Attributes:
-        grid: The known part of the map.
+        grid: Known part of the map.
         robot: Robot pose in the map frame.
-        distances: (rows, cols) path length [m], inf for unreachable cells.
+        distances: Path length (rows, cols) to each cell [m], inf for unreachable cells.
         goals: Two arrays like ``distances`` of the cells that may be goals: those with goal_clearance to
             obstacles and unknown space, and those with goal_clearance to obstacles only.
     """
@@ -36,13 +36,19 @@ class ReachableSpace:
     goals: List[np.ndarray]
 
     def distance_to(self, pose: Pose2) -> float:
-        """Path length to a pose [m], inf if it is unreachable."""
+        """Return the path length to a pose in the map frame [m], inf if it is unreachable."""
         cell = self.grid.cells_of([[pose.x, pose.y]])
         return float(self.distances[tuple(cell[0])]) if self.grid.contains(cell)[0] else math.inf
 
 
 def reachable_space(robot: Pose2, grid: OccupancyGrid, settings: ExplorerSettings) -> ReachableSpace:
-    """Compute what the robot can reach in a map."""
+    """Compute which cells of a map the robot can reach.
+
+    Args:
+        robot: Robot pose in the map frame.
+        grid: Known part of the map (see known_part).
+        settings: Clearances of paths and goals.
+    """
     obstacle_distance = distance_field(grid.cells == OCCUPIED, grid.resolution)
     distances = travel_distances(grid, obstacle_distance, robot, settings.clearance)
     unknown_distance = distance_field(grid.cells != FREE, grid.resolution)
@@ -60,8 +66,8 @@ class Target:
     Attributes:
         frontier: The frontier.
         viewpoint: Goal pose in the map frame, facing the frontier.
-        cost: In metres of path.
-        in_place: The viewpoint is the robot's position when the target was found: it only has to turn.
+        cost: Cost of the target, in metres of path.
+        in_place: Whether the viewpoint is the robot's position: it only has to turn.
     """
 
     frontier: Frontier
@@ -72,6 +78,9 @@ class Target:
 
 class TargetFinder:
     """Finds the targets in a map, without those that failed too often.
+
+    Args:
+        settings: Sizes, costs and attempts.
 
     Attributes:
         frontiers: Frontiers of the last map with a viewpoint.
@@ -89,7 +98,7 @@ class TargetFinder:
         self._refused.append(target)
 
     def find(self, space: ReachableSpace) -> List[Target]:
-        """The frontiers that have a viewpoint, in the order of find_frontiers."""
+        """Return a target for each frontier that has a viewpoint, in the order of find_frontiers."""
         settings = self._settings
         self.frontiers, self.unreachable = [], []
         targets = []

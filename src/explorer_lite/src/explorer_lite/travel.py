@@ -24,7 +24,7 @@ def travel_distances(
 
     Args:
         grid: Free, occupied and unknown cells.
-        obstacle_distance: (rows, cols) distance to the nearest obstacle [m].
+        obstacle_distance: Distance (rows, cols) to the nearest obstacle [m].
         robot: Robot pose in the grid's frame.
         clearance: Least distance to obstacles along a path [m].
 

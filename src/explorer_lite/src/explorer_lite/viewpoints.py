@@ -23,9 +23,9 @@ def viewpoint_of(
 
     Args:
         frontier: The frontier.
-        grid: The map.
-        distances: (rows, cols) path lengths, finite for cells that may be goals; see travel_distances.
-        robot: Robot pose.
+        grid: Known part of the map.
+        distances: Path lengths (rows, cols) [m], finite for cells that may be goals; see travel_distances.
+        robot: Robot pose in the map frame.
         reach: Maximum distance to the frontier's middle [m].
         excluded: Poses that failed before.
         excluded_radius: Distance to keep from those [m].
@@ -56,7 +56,19 @@ def viewpoint_in_place(
     excluded: List[Pose2],
     excluded_radius: float,
 ) -> Optional[Pose2]:
-    """The robot's position, facing the frontier's middle, if it is a valid viewpoint; else None."""
+    """Return the robot's position, facing a frontier, if that is a valid viewpoint.
+
+    Args:
+        frontier: The frontier.
+        grid: Known part of the map.
+        robot: Robot pose in the map frame.
+        reach: Maximum distance to the frontier's middle [m].
+        excluded: Poses that failed before.
+        excluded_radius: Distance to keep from those [m].
+
+    Returns:
+        A pose facing the frontier's middle; None if the position is not valid.
+    """
     here_xy, middle_xy = np.array([[robot.x, robot.y]]), frontier.middle_xy
     if not np.isfinite(_viewing_distances(grid, middle_xy, here_xy, reach, excluded, excluded_radius))[0]:
         return None

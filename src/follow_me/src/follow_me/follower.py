@@ -13,7 +13,7 @@ _PREDICTION_STEPS, _MAX_PREDICTION_SHARE = 2.0, 0.3
 
 
 class LeaderFollower:
-    """Computes goals on the leader's path, ``gap`` behind it: where the leader has been, the way is free.
+    """Computes goals on the leader's path, which is free of obstacles, ``gap`` behind it.
 
     Once there, the follower stands and turns with the leader, so that it can start at once.
 
@@ -37,7 +37,7 @@ class LeaderFollower:
             follower_in_map: Pose of the follower.
 
         Returns:
-            A goal in the map frame; None if the last one is still good, or the leader is near and in view.
+            A goal in the map frame; None if the last one is still valid, or the leader is near and in view.
         """
         before, self._leader_in_map = self._leader_in_map or leader_in_map, leader_in_map
         self._leader_step = before.distance_to(leader_in_map)

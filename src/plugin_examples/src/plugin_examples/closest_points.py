@@ -20,10 +20,26 @@ OUTLIER, PAIRED, SIGMA = 0.1, 0.1, 0.05
 
 
 class ClosestPoints:
+    """Scan matcher by iterated closest points, with odometry as a prior (slam_lite.matching.scan_matcher).
+
+    Args:
+        settings: Not used.
+    """
+
     def __init__(self, settings: MapperSettings):
         pass
 
     def match(self, cloud: PointCloud, local_map: LocalMap, prediction: Prediction) -> Match:
+        """Match a scan to a map.
+
+        Args:
+            cloud: Points of the scan in the base frame.
+            local_map: Points of the map, with the index of the nearest one for each cell.
+            prediction: Pose of the base by odometry, and its information (3, 3).
+
+        Returns:
+            Pose of the base, its information (3, 3), and the fraction of the points that are paired.
+        """
         predicted = local_map.to_grid(prediction.base_pose)
         pose = predicted.copy()
         for _ in range(STEPS):

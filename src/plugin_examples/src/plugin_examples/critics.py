@@ -25,6 +25,8 @@ FORWARD_POINT_DISTANCE, LOOKAHEAD = 0.3, 0.8
 
 @dataclass(frozen=True)
 class CriticsSettings(ControllerSettings):
+    """Simulated time, and a weight for each critic, named as its function."""
+
     sim_time: float = parameter(1.2, "time that each arc is simulated", "s", POSITIVE, dynamic=5.0)
     obstacles: float = parameter(0.4, "weight of the highest cost on the arc", "", at_least(0.0), dynamic=5.0)
     path_distance: float = parameter(
@@ -40,22 +42,23 @@ class CriticsSettings(ControllerSettings):
 
 @dataclass(frozen=True, eq=False)
 class SampledArcs:
-    """Sampled arcs.
+    """Arcs of constant velocity.
 
     Attributes:
-        commands: (N, 2) of v, omega [m/s, rad/s].
-        poses: (N, T, 3) of x, y, yaw in the local frame.
+        commands: Speed and turn rate (N, 2) of each arc [m/s, rad/s].
+        poses: x, y, yaw (N, T, 3) along each arc in the local frame.
     """
 
     commands: np.ndarray
     poses: np.ndarray
 
 
+# Returns a score (N,) of each arc, given the robot state, the costmaps and the rest of the plan.
 Critic = Callable[[SampledArcs, ControlContext, Plan], np.ndarray]
 
 
 def obstacles(arcs: SampledArcs, context: ControlContext, _plan: Plan) -> np.ndarray:
-    """Highest cost on each arc, 0 to 1; inf in collision."""
+    """Return the highest cost (N,) on each arc, 0 to 1; inf in collision."""
     window = context.costmap.window
     cells = np.floor((arcs.poses[..., :2] - (window.origin_x, window.origin_y)) / window.resolution).astype(
         int
@@ -66,17 +69,20 @@ def obstacles(arcs: SampledArcs, context: ControlContext, _plan: Plan) -> np.nda
 
 
 def path_distance(arcs: SampledArcs, _context: ControlContext, plan: Plan) -> np.ndarray:
-    """Distance from each end to the plan [m]."""
+    """Return the distance (N,) from each end to the plan [m]."""
     return _distances(arcs.poses[:, -1, :2], plan.path_xy).min(axis=1)
 
 
 def path_align(arcs: SampledArcs, _context: ControlContext, plan: Plan) -> np.ndarray:
-    """Distance from each end's forward point to the plan [m]: aligns the robot with the plan."""
+    """Return the distance (N,) from each end's forward point to the plan [m].
+
+    It aligns the robot with the plan.
+    """
     return _distances(_forward_points(arcs), plan.path_xy).min(axis=1)
 
 
 def goal_distance(arcs: SampledArcs, _context: ControlContext, plan: Plan) -> np.ndarray:
-    """Distance from each end to a lookahead point of the plan [m]."""
+    """Return the distance (N,) from each end to a lookahead point of the plan [m]."""
     steps = np.hypot(*np.diff(plan.path_xy, axis=0, prepend=plan.path_xy[:1]).T)
     ahead = plan.path_xy[min(int(np.searchsorted(np.cumsum(steps), LOOKAHEAD)), len(steps) - 1)]
     return _distances(arcs.poses[:, -1, :2], ahead[None, :])[:, 0]
@@ -86,12 +92,29 @@ CRITICS: Tuple[Critic, ...] = (obstacles, path_distance, path_align, goal_distan
 
 
 class Critics:
+    """Local planner that drives the sampled arc with the lowest weighted sum of scores.
+
+    Args:
+        settings: Simulated time and weights.
+        period: Control period [s].
+    """
+
     Settings = CriticsSettings
 
     def __init__(self, settings: CriticsSettings, period: float):
         self._settings, self._period = settings, period
 
     def follow(self, context: ControlContext, plan: Plan, limits: Twist2) -> Trajectory:
+        """Return the best arc without a collision.
+
+        Args:
+            context: Robot state and costmaps.
+            plan: Rest of the global plan.
+            limits: Largest speed and turn rate [m/s, rad/s].
+
+        Raises:
+            ControlError: Every arc collides.
+        """
         arcs = self._arcs(context, limits)
         scores = np.zeros(len(arcs.commands))
         for critic in CRITICS:

@@ -31,9 +31,9 @@ class PolicyObservation(NamedTuple):
     """Input of the policy.
 
     Attributes:
-        clearances: (SECTORS,) [m], counter-clockwise from behind the robot.
-        x: Lookahead point in the base frame [m]; so is ``y``.
-        y: See ``x``.
+        clearances: Distance to obstacles (SECTORS,) [m], counter-clockwise from behind the robot.
+        x: Lookahead point in the base frame, ahead [m].
+        y: Lookahead point in the base frame, to the left [m].
         v: Speed as a share of the maximum.
         omega: Turn rate as a share of the maximum.
     """
@@ -49,7 +49,7 @@ class Policy:
     """A network with one hidden layer; with a zero output layer it is pure pursuit.
 
     Args:
-        weights: (WEIGHT_COUNT,), hidden layer first.
+        weights: Weights (WEIGHT_COUNT,), hidden layer first.
     """
 
     LAST_LAYER_SIZE = OUTPUTS * (HIDDEN + 1)
@@ -60,7 +60,11 @@ class Policy:
         self._first, self._last = first.reshape(HIDDEN, -1), last.reshape(OUTPUTS, -1)
 
     def act(self, observation: PolicyObservation) -> np.ndarray:
-        """Speed in [0, 1] and turn rate in [-1, 1] as shares of the maximum: (2,)."""
+        """Return speed and turn rate as shares of the maximum.
+
+        Returns:
+            Speed in [0, 1] and turn rate in [-1, 1], (2,).
+        """
         bearing = math.atan2(observation.y, observation.x)
         reach = min(math.hypot(observation.x, observation.y), 1.0)
         rest = (math.cos(bearing), math.sin(bearing), reach, observation.v, observation.omega)
@@ -72,11 +76,28 @@ class Policy:
 
 
 class Learned:
+    """Local planner that drives by the policy with trained weights.
+
+    Args:
+        settings: Accelerations of the robot.
+        period: Control period [s].
+    """
+
     def __init__(self, settings: ControllerSettings, period: float):
         self._settings, self._period = settings, period
         self._policy = Policy(np.load(WEIGHTS)["weights"])
 
     def follow(self, context: ControlContext, plan: Plan, limits: Twist2) -> Trajectory:
+        """Return the arc of the policy's command, slower if it would collide.
+
+        Args:
+            context: Robot state and costmaps.
+            plan: Rest of the global plan.
+            limits: Largest speed and turn rate [m/s, rad/s].
+
+        Raises:
+            ControlError: The arc collides at every speed.
+        """
         base, twist = context.base_in_local, context.twist
         apart = np.hypot(plan.path_xy[:, 0] - base.x, plan.path_xy[:, 1] - base.y)
         ahead = plan.path_xy[int(np.argmax(apart >= LOOKAHEAD)) or -1]
@@ -94,7 +115,7 @@ class Learned:
 
 
 def sector_clearances(context: ControlContext) -> np.ndarray:
-    """Distance to the nearest lethal cell in each sector (SECTORS,) [m]."""
+    """Return the distance (SECTORS,) to the nearest lethal cell in each sector [m]."""
     costmap = context.costmap
     cells = np.where(costmap.costs == LETHAL, OCCUPIED, 0).astype(np.int8)
     window = costmap.window

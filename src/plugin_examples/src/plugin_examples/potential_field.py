@@ -18,6 +18,8 @@ TURN_GAIN = 2.0
 
 @dataclass(frozen=True)
 class PotentialFieldSettings(ControllerSettings):
+    """Attracting point and strength of the repulsion."""
+
     lookahead: float = parameter(
         0.5, "distance along the plan to the attracting point", "m", POSITIVE, dynamic=5.0
     )
@@ -25,12 +27,29 @@ class PotentialFieldSettings(ControllerSettings):
 
 
 class PotentialField:
+    """Local planner that drives along the sum of an attracting and a repelling force.
+
+    Args:
+        settings: Attracting point and strength of the repulsion.
+        period: Control period [s].
+    """
+
     Settings = PotentialFieldSettings
 
     def __init__(self, settings: PotentialFieldSettings, period: float):
         self._settings, self._period = settings, period
 
     def follow(self, context: ControlContext, plan: Plan, limits: Twist2) -> Trajectory:
+        """Return an arc that turns towards the force.
+
+        Args:
+            context: Robot state and costmaps.
+            plan: Rest of the global plan.
+            limits: Largest speed and turn rate [m/s, rad/s].
+
+        Raises:
+            ControlError: The arc collides.
+        """
         base = context.base_in_local
         apart = np.hypot(plan.path_xy[:, 0] - base.x, plan.path_xy[:, 1] - base.y)
         target_xy = plan.path_xy[int(np.argmax(apart >= self._settings.lookahead)) or -1] - (base.x, base.y)

@@ -15,16 +15,35 @@ MAX_ARC_LENGTH, STEPS = 0.3, 6
 
 @dataclass(frozen=True)
 class PurePursuitSettings(ControllerSettings):
+    """Distance to the lookahead point."""
+
     lookahead: float = parameter(0.4, "distance to the lookahead point", "m", POSITIVE, dynamic=5.0)
 
 
 class PurePursuit:
+    """Local planner that drives an arc through a lookahead point of the plan.
+
+    Args:
+        settings: Distance to the lookahead point.
+        period: Control period [s].
+    """
+
     Settings = PurePursuitSettings
 
     def __init__(self, settings: PurePursuitSettings, period: float):
         self._settings, self._period = settings, period
 
     def follow(self, context: ControlContext, plan: Plan, limits: Twist2) -> Trajectory:
+        """Return the arc to the lookahead point.
+
+        Args:
+            context: Robot state and costmaps.
+            plan: Rest of the global plan.
+            limits: Largest speed and turn rate [m/s, rad/s].
+
+        Raises:
+            ControlError: The arc collides.
+        """
         base = context.base_in_local
         apart = np.hypot(plan.path_xy[:, 0] - base.x, plan.path_xy[:, 1] - base.y)
         ahead = plan.path_xy[int(np.argmax(apart >= self._settings.lookahead)) or -1]
@@ -39,7 +58,17 @@ class PurePursuit:
 
 
 def arc(base: Pose2, command: Twist2, seconds: float, steps: int) -> np.ndarray:
-    """Poses (steps + 1, 3) of a robot that drives a constant command."""
+    """Return the poses of a robot that drives a constant command.
+
+    Args:
+        base: Start pose.
+        command: Speed and turn rate [m/s, rad/s].
+        seconds: Duration [s].
+        steps: Number of intervals.
+
+    Returns:
+        x, y, yaw (steps + 1, 3) in the frame of ``base``'s coordinates.
+    """
     poses, dt = [base], seconds / steps
     for _ in range(steps):
         poses.append(poses[-1] @ Pose2(command.v * dt, 0.0, command.omega * dt))

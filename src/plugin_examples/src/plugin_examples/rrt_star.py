@@ -13,6 +13,8 @@ from planar.config.parameters import POSITIVE, Interval, parameter
 
 @dataclass(frozen=True)
 class RrtStarSettings(PlannerSettings):
+    """Number, reach and seed of the samples."""
+
     samples: int = parameter(6000, "number of samples", bounds=Interval(10, 100000, "10 to 100000"))
     steer: float = parameter(1.0, "maximum length of a branch", "m", POSITIVE)
     goal_bias: float = parameter(0.05, "share of samples at the goal", bounds=Interval(0.0, 1.0, "0 to 1"))
@@ -20,6 +22,12 @@ class RrtStarSettings(PlannerSettings):
 
 
 class RrtStar:
+    """Global planner that searches a path with a random tree (RRT*).
+
+    Args:
+        settings: Number, reach and seed of the samples.
+    """
+
     Settings = RrtStarSettings
     potential = None
 
@@ -34,6 +42,24 @@ class RrtStar:
         goal_xy: Tuple[float, float],
         tolerance: float = 0.0,
     ) -> np.ndarray:
+        """Find a path between two points.
+
+        Args:
+            costs: Costs (rows, cols) of the global costmap, uint8.
+            window: Position of the cells.
+            start_xy: Start in the map frame [m].
+            goal_xy: Goal in the map frame [m].
+            tolerance: Not used: the path ends at the goal.
+
+        Returns:
+            Points (N, 2) of the path, at most one cell apart [m].
+
+        Raises:
+            StartBlocked: The start is not free.
+            GoalBlocked: The goal is not free.
+            OutOfMap: The start or the goal is outside of the map.
+            NoPath: The samples connect no path.
+        """
         is_free = (costs < INSCRIBED) | (self._settings.allow_unknown & (costs == 255))
         start, goal = (self._cell(xy, window) for xy in (start_xy, goal_xy))
         for cell, kind in ((start, StartBlocked), (goal, GoalBlocked)):

@@ -19,6 +19,13 @@ SIGMA, BEAM_WEIGHT = 0.1, 0.2
 
 
 class ShortReadings:
+    """Sensor model: a likelihood field in which a beam may also end in free space.
+
+    Args:
+        grid: The map.
+        settings: Not used.
+    """
+
     def __init__(self, grid: OccupancyGrid, settings: LocalizerSettings):
         self._grid = grid
         # Beams end at the surface of a wall; a plain likelihood field also accepts its inside.
@@ -27,6 +34,15 @@ class ShortReadings:
         self._logarithms = np.log(HIT * near + SHORT * (grid.cells == FREE) + UNEXPLAINED)
 
     def log_likelihoods(self, poses: np.ndarray, beams: Beams) -> np.ndarray:
+        """Return the log-likelihoods of a scan.
+
+        Args:
+            poses: Particles (N, 3): x, y, yaw of the base in the map frame.
+            beams: Beams of the scan, with their ends in the base frame.
+
+        Returns:
+            Log-likelihood (N,) of each particle.
+        """
         ends = beams.ends_xy
         cos, sin = np.cos(poses[:, 2:]), np.sin(poses[:, 2:])
         x = poses[:, :1] + cos * ends[:, 0] - sin * ends[:, 1]

@@ -22,6 +22,8 @@ REACH, HIGHEST = 2.0, INSCRIBED - 1
 
 @dataclass(frozen=True)
 class SocialDistanceSettings(LayerSettings):
+    """Topic of the laser, and size of the costs around a person."""
+
     topic: str = parameter("scan", "topic of the laser")
     spread: float = parameter(
         0.4, "standard deviation beside and behind a person", "m", POSITIVE, dynamic=2.0
@@ -32,6 +34,13 @@ class SocialDistanceSettings(LayerSettings):
 
 
 class SocialDistance(Layer):
+    """Costmap layer with a Gaussian around each tracked person.
+
+    Args:
+        settings: Topic of the laser, and size of the Gaussians.
+        site: Not used.
+    """
+
     Settings = SocialDistanceSettings
 
     def __init__(self, settings: SocialDistanceSettings, site: LayerContext):
@@ -40,11 +49,18 @@ class SocialDistance(Layer):
         self._people, self._bounds = NO_DYNAMIC_OBSTACLES, NO_CELLS
 
     def add_observation(self, observation: Observation, base_in_frame: Pose2) -> None:
+        """Update the tracked people by a scan.
+
+        Args:
+            observation: Beams of one sensor; those of other topics are ignored.
+            base_in_frame: Robot in the costmap's frame when they were measured.
+        """
         if observation.topic == self._settings.topic:
             self._tracker.update(base_in_frame, observation)
             self._stamp = observation.stamp
 
     def update(self, placement: CostmapPlacement) -> CellBounds:
+        """Compute which cells the people of now and of the last update cover."""
         before, self._people, self._bounds = (
             self._bounds,
             self._tracker.obstacles_at(self._stamp),
@@ -58,6 +74,13 @@ class SocialDistance(Layer):
         return union(before, self._bounds)
 
     def apply(self, costs: np.ndarray, window: CostmapWindow, bounds: CellBounds) -> None:
+        """Raise costs to the Gaussians' values.
+
+        Args:
+            costs: Costs of the layers below, uint8 (rows, cols); changed in place.
+            window: Position of the cells.
+            bounds: Block of cells to change.
+        """
         rows, cols = np.mgrid[bounds.slices]
         if not rows.size:
             return
@@ -69,6 +92,11 @@ class SocialDistance(Layer):
             np.maximum(block, added, out=block, where=block < added)
 
     def clear_outside(self, bounds: CellBounds, window: CostmapWindow) -> CellBounds:
+        """Drop all tracked people, also those within the bounds.
+
+        Returns:
+            Block of cells whose costs change.
+        """
         before = self._bounds
         self._tracker, self._people, self._bounds = (
             DynamicObstacleTracker(),

@@ -21,7 +21,12 @@ class KeyScriptError(PlanarError):
 
 @dataclass(frozen=True)
 class KeyStroke:
-    """A key held for ``seconds``; 0: pressed once."""
+    """A key that is pressed or held.
+
+    Attributes:
+        key: The key.
+        seconds: Duration [s]; 0 for a key that is pressed once.
+    """
 
     key: str
     seconds: float = 0.0
@@ -31,11 +36,11 @@ def parse(text: str, keys: Collection[str] = KEYS) -> List[KeyStroke]:
     """Parse a script such as ``i:2.0 j:1.5``, separated by blanks, newlines or commas.
 
     Args:
-        text: The script; a key without a time (``q``) is pressed once.
+        text: The script, durations in seconds; a key without a duration (``q``) is pressed once.
         keys: The valid keys.
 
     Raises:
-        KeyScriptError: A part of the text is not a key with a time.
+        KeyScriptError: A part of the text is not a key with a duration.
     """
     strokes = []
     position = SEPARATORS.match(text).end()  # type: ignore[union-attr]
@@ -65,7 +70,11 @@ class KeyScript:
         return not self._strokes
 
     def keys_at(self, now: float) -> str:
-        """Keys that are down at time ``now`` [s], which must not decrease; empty at the end."""
+        """Return the keys that are down at a time; empty at the end.
+
+        Args:
+            now: Time [s], which must not decrease between calls.
+        """
         keys = ""
         start = now if self._held_since is None else self._held_since
         while self._strokes:

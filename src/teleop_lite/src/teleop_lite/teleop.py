@@ -38,6 +38,9 @@ TIME_TOLERANCE = 1e-6
 class Teleop:
     """Ramps the velocity towards that of the pressed key, and to zero when no key is held.
 
+    Args:
+        settings: Initial full speed and turn rate.
+
     Attributes:
         full: Full speed and turn rate [m/s, rad/s].
     """
@@ -61,7 +64,11 @@ class Teleop:
         self._is_pressed = True
 
     def tick(self, now: float) -> Twist2:
-        """Velocity command for the next TICK_SECONDS; ``now``: time of a monotonic clock [s]."""
+        """Return the velocity command for the next TICK_SECONDS.
+
+        Args:
+            now: Time of a monotonic clock [s].
+        """
         if self._is_pressed:
             self._is_pressed, self._pressed_at = False, now
         elif self._pressed_at is not None and now - self._pressed_at > RELEASE_SECONDS - TIME_TOLERANCE:

@@ -51,12 +51,19 @@ class Terminal:
             termios.tcsetattr(self._descriptor, termios.TCSADRAIN, self._attributes)
 
     def read(self, timeout: float) -> str:
-        """Read keys, waiting at most ``timeout`` seconds; Ctrl-C if the terminal was closed."""
+        """Read keys; Ctrl-C if the terminal was closed.
+
+        Args:
+            timeout: Longest time to wait for a key [s].
+        """
         return _read(self._descriptor, timeout, at_end=CTRL_C)
 
 
 class Pipe:
     """Lines from a pipe or file.
+
+    Args:
+        descriptor: File descriptor of the input.
 
     Attributes:
         is_at_end: Whether the end of the input was reached.

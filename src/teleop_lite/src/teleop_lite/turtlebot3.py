@@ -18,7 +18,10 @@ class SteppedTeleop:
     """Changes the velocity by a step per key and keeps it until the next key.
 
     Args:
-        model: TurtleBot3 model.
+        model: TurtleBot3 model, which decides on the limits; an unknown one has those of ``burger``.
+
+    Attributes:
+        full: Target speed and turn rate [m/s, rad/s].
     """
 
     def __init__(self, model: str = "burger"):
@@ -37,7 +40,7 @@ class SteppedTeleop:
         )
 
     def tick(self, now: float) -> Twist2:
-        """Velocity command until the next tick, half a step closer to the target."""
+        """Return the velocity command until the next tick, half a step closer to the target."""
         self._command = Twist2(
             self._command.v + _within(self.full.v - self._command.v, STEP.v / 2.0),
             self._command.omega + _within(self.full.omega - self._command.omega, STEP.omega / 2.0),

@@ -31,7 +31,7 @@ def draw(message) -> LayerUpdate:
 
 
 def colours_of(heights: np.ndarray) -> np.ndarray:
-    """(N, 3) uint8, from blue below to red above."""
+    """Return colours (N, 3), uint8, for heights (N,): blue for the lowest to red for the highest."""
     low, high = (heights.min(), heights.max()) if len(heights) else (0.0, 1.0)
     share = (heights - low) / max(float(high - low), 1e-6)
     return np.column_stack((255 * share, 255 * (1 - np.abs(2 * share - 1)), 255 * (1 - share))).astype(

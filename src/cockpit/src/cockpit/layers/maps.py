@@ -35,13 +35,26 @@ MAP_COLOURS, COSTMAP_COLOURS = _map_colours(), _costmap_colours()
 
 
 def picture_of(cells: np.ndarray, is_costmap: bool) -> np.ndarray:
-    """Convert cells (rows, columns) int8, row 0 lowest, to an image (rows, columns, 4), row 0 at the top."""
+    """Convert the cells of a grid to an image.
+
+    Args:
+        cells: Occupancy (rows, columns), int8, row 0 lowest.
+        is_costmap: Whether the colours are those of costmaps.
+
+    Returns:
+        Image (rows, columns, 4), uint8, row 0 at the top.
+    """
     colours = COSTMAP_COLOURS if is_costmap else MAP_COLOURS
     return colours[cells[::-1].view(np.uint8)]
 
 
 def draw_as(is_costmap: bool, height: float):
-    """Return a function that draws grids at a height [m]; different heights avoid flicker."""
+    """Return a function that draws grids.
+
+    Args:
+        is_costmap: Whether the colours are those of costmaps.
+        height: Height of the image [m]; different heights of several grids avoid flicker.
+    """
 
     def draw(message) -> LayerUpdate:
         info = message.info

@@ -50,7 +50,15 @@ class MarkerLayer:
 
 
 def part_of(marker, name: str) -> PlacedShape:
-    """Convert a marker. Raises ValueError if it is malformed."""
+    """Convert a marker.
+
+    Args:
+        marker: visualization_msgs/Marker.
+        name: Name of the shape.
+
+    Raises:
+        ValueError: The marker is malformed.
+    """
     p, q = marker.pose.position, marker.pose.orientation
     quaternion = (q.x, q.y, q.z, q.w) if any((q.x, q.y, q.z, q.w)) else (0.0, 0.0, 0.0, 1.0)
     pose = pose_matrix((p.x, p.y, p.z), quaternion)

@@ -11,14 +11,30 @@ LENGTH, HEAD, HEIGHT = 0.45, 0.14, 0.06
 
 
 def arrow(length: float = LENGTH, head: float = HEAD) -> np.ndarray:
-    """Return a flat arrow along x from the origin: segments (3, 2, 3)."""
+    """Return a flat arrow along x from the origin.
+
+    Args:
+        length: Length of the arrow [m].
+        head: Length of its head [m].
+
+    Returns:
+        Segments (3, 2, 3) [m].
+    """
     tip = (length, 0.0, 0.0)
     ends = [(0.0, 0.0, 0.0), (length - head, head * 0.6, 0.0), (length - head, -head * 0.6, 0.0)]
     return np.array([(end, tip) for end in ends])
 
 
 def ellipse(covariance: np.ndarray, sigmas: float = 2.0) -> np.ndarray:
-    """Return the ellipse of a covariance (2, 2): segments (32, 2, 3)."""
+    """Return the confidence ellipse of a covariance.
+
+    Args:
+        covariance: Covariance (2, 2) of x and y [m^2].
+        sigmas: Size of the ellipse, as a number of standard deviations.
+
+    Returns:
+        Segments (32, 2, 3) around the origin [m].
+    """
     values, vectors = np.linalg.eigh((covariance + covariance.T) / 2.0)
     angles = np.linspace(0.0, 2.0 * np.pi, 33)
     circle = np.stack((np.cos(angles), np.sin(angles)))

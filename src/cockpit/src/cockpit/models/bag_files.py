@@ -13,7 +13,15 @@ MOST_LISTED = 100
 
 
 def new_bag(folder: Path, name: str) -> Path:
-    """Return the path of a new bag. Raises CockpitError for a bad name or an existing file."""
+    """Return the path of a new bag.
+
+    Args:
+        folder: Folder of the bag.
+        name: File name, with or without ``.bag``.
+
+    Raises:
+        CockpitError: The name is not valid, or the file exists.
+    """
     stem = name.strip()
     stem = stem[:-4] if stem.endswith(".bag") else stem
     if not NAME.fullmatch(stem) or stem.startswith("."):
@@ -25,7 +33,7 @@ def new_bag(folder: Path, name: str) -> Path:
 
 
 def bags_below(folder: Path) -> List[str]:
-    """Return bag paths relative to ``folder``, the newest first."""
+    """Return the paths of bags relative to ``folder``, the newest first."""
     found = [path for pattern in PLACES for path in folder.glob(pattern) if path.is_file()]
     found.sort(key=lambda path: path.stat().st_mtime, reverse=True)
     return [str(path.relative_to(folder)) for path in found[:MOST_LISTED]]

@@ -34,7 +34,7 @@ class FaultKindInfo:
         return f"{self.description}. Usually {self.amount(0.0)}, from {self.least:g} to {self.largest:g}."
 
     def amount(self, strength: float) -> str:
-        """Format a strength with its unit; 0 means the usual one."""
+        """Format a strength with its unit; 0 is the default strength."""
         return f"{strength or self.usual:g} {self.unit}" if self.unit else ""
 
 
@@ -67,13 +67,21 @@ class RequestedFaults:
         self._simulator = simulator
 
     def add(self, request: FaultRequest, now: float) -> None:
-        """Record a fault that began at ``now`` [simulated s]."""
+        """Record a fault.
+
+        Args:
+            request: The fault.
+            now: Time at which it began [simulated s].
+        """
         self._begun.append((request, now))
 
     def rows(self, now: float) -> List[Row]:
         """Return kind, strength and seconds left of each active fault.
 
         Expired faults are kept: when simulated time jumps back, the simulator applies them again.
+
+        Args:
+            now: Simulated time [s].
         """
         active = (
             (request, start + (request.seconds or math.inf)) for request, start in self._begun if start <= now

@@ -24,7 +24,15 @@ Edge = Tuple[str, str]
 
 @dataclass(frozen=True)
 class GraphFilter:
-    """Which part of the graph is drawn."""
+    """Which part of the graph is drawn.
+
+    Attributes:
+        kind: One of KINDS: which nodes and topics are drawn.
+        debug: Whether the log, the clock and the cockpit itself are drawn.
+        transforms: Whether /tf and /tf_static are drawn.
+        actions_apart: Whether the five topics of an action are drawn separately.
+        part_of_name: Part of the names to draw; empty for all.
+    """
 
     kind: str = ACTIVE
     debug: bool = False
@@ -34,7 +42,13 @@ class GraphFilter:
 
 
 def dot_of(publishers: Ends, subscribers: Ends, shown: GraphFilter) -> str:
-    """Return the graph in graphviz's language."""
+    """Return the graph in graphviz's language.
+
+    Args:
+        publishers: Publishing nodes of each topic.
+        subscribers: Subscribing nodes of each topic.
+        shown: Which part is drawn.
+    """
     writers, readers = _chosen(publishers, shown), _chosen(subscribers, shown)
     if shown.kind == NODES:
         return _nodes_only(writers, readers)

@@ -9,7 +9,15 @@ SHORTEST_DRAG = 0.15
 
 
 def floor_intersection(origin: Iterable[float], towards: Iterable[float]) -> Optional[Tuple[float, float]]:
-    """Intersect the ray from ``origin`` through ``towards`` with z = 0; None without an intersection."""
+    """Intersect a ray with the floor, z = 0.
+
+    Args:
+        origin: Start (3,) of the ray [m].
+        towards: Another point (3,) of the ray [m].
+
+    Returns:
+        x and y [m]; None without an intersection.
+    """
     (ox, oy, oz), (tx, ty, tz) = origin, towards
     if abs(tz - oz) < 1e-9:
         return None
@@ -21,7 +29,13 @@ def floor_intersection(origin: Iterable[float], towards: Iterable[float]) -> Opt
 
 
 def drag_yaw(start: Tuple[float, float], end: Optional[Tuple[float, float]], otherwise: float) -> float:
-    """Return the yaw of a drag from ``start`` to ``end``, or ``otherwise`` if it is too short [rad]."""
+    """Return the yaw of a drag [rad].
+
+    Args:
+        start: Where the mouse was pressed, x and y [m].
+        end: Where it was released; None for a click.
+        otherwise: Yaw if the drag is too short to have a direction [rad].
+    """
     if end is None or math.hypot(end[0] - start[0], end[1] - start[1]) < SHORTEST_DRAG:
         return otherwise
     return math.atan2(end[1] - start[1], end[0] - start[0])

@@ -31,6 +31,7 @@ def cylinder() -> Solid:
 
 
 def ball() -> Solid:
+    """Return a sphere."""
     tilts = np.linspace(0.0, np.pi, CORNERS // 2 + 1)
     rings = [np.column_stack((_circle() * np.sin(tilt), np.full(CORNERS, np.cos(tilt)))) for tilt in tilts]
     at = np.arange((len(tilts) - 1) * CORNERS)
@@ -41,7 +42,16 @@ def ball() -> Solid:
 
 
 def placed_at(vertices: np.ndarray, triangles: np.ndarray, points: np.ndarray) -> Solid:
-    """Return one copy of a solid at each of ``points`` (N, 3)."""
+    """Return one mesh with a copy of a solid at each point.
+
+    Args:
+        vertices: Vertices (N, 3) of the solid [m].
+        triangles: Its vertex indices (M, 3).
+        points: Positions (K, 3) of the copies [m].
+
+    Returns:
+        Vertices (K * N, 3) and triangles (K * M, 3).
+    """
     count = len(vertices)
     copies = (vertices[None] + points[:, None]).reshape(-1, 3)
     offsets = np.arange(len(points))[:, None, None] * count

@@ -25,7 +25,15 @@ def expanded(word: str) -> List[str]:
 
 
 def number_at(message: Any, path: str) -> float:
-    """Return the number at a path such as ``ranges[3]``. Raises CockpitError if there is none."""
+    """Return a number in a message.
+
+    Args:
+        message: A ROS message.
+        path: Path of the field, such as ``twist.linear.x`` or ``ranges[3]``.
+
+    Raises:
+        CockpitError: There is no number at the path.
+    """
     value = message
     for word in path.split("."):
         matched = STEP.fullmatch(word)
@@ -66,13 +74,24 @@ def _numbers(value: Any, path: str, depth: int) -> List[str]:
 
 
 class TimeSeries:
-    """Named series of timed numbers; ``seconds`` is the plotted time span [s]."""
+    """Named series of timed numbers.
+
+    Attributes:
+        seconds: Plotted time span [s].
+    """
 
     def __init__(self, seconds: float):
         self.seconds = seconds
         self._samples: Dict[str, Deque[Tuple[float, float]]] = {}
 
     def add(self, name: str, at: float, value: float) -> None:
+        """Add a sample; one that is not finite is ignored.
+
+        Args:
+            name: Name of the series.
+            at: Steady-clock time [s].
+            value: The number.
+        """
         samples = self._samples.setdefault(name, deque(maxlen=MOST_SAMPLES))
         if math.isfinite(value):
             samples.append((at, value))

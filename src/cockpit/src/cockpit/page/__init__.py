@@ -1,1 +1,1 @@
-"""The page, by viser: the one room that knows it."""
+"""The page, served by viser; no other package imports viser."""

@@ -17,7 +17,11 @@ class CameraFollower:
         self._at: Optional[np.ndarray] = None
 
     def update(self, base_in_fixed: Optional[np.ndarray]) -> None:
-        """Follow the base pose (4, 4) in the fixed frame; None stops following."""
+        """Follow the robot.
+
+        Args:
+            base_in_fixed: Pose (4, 4) of its base in the fixed frame; None stops following.
+        """
         if base_in_fixed is None:
             self._at = None
             return

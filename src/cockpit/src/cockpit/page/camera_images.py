@@ -17,7 +17,11 @@ class CameraWindow:
         self._shown: Dict[str, int] = {}
 
     def show(self, pictures: Dict[str, np.ndarray]) -> None:
-        """Show the newest image (rows, columns, 3) uint8 of each topic."""
+        """Show images.
+
+        Args:
+            pictures: Newest image (rows, columns, 3), uint8, of each topic.
+        """
         if set(pictures) != set(self._images):
             self._rebuild(pictures)
         for topic, picture in pictures.items():

@@ -49,7 +49,15 @@ START = """<!doctype html>
 
 
 def listen(address: str, port: int) -> socket.socket:
-    """Open a listening socket. Raises PortError."""
+    """Open a listening socket.
+
+    Args:
+        address: Address to bind.
+        port: Port; 0 selects a free one.
+
+    Raises:
+        PortError: The address is in use or not available.
+    """
     family = socket.AF_INET6 if ":" in address else socket.AF_INET
     listening = socket.socket(family, socket.SOCK_STREAM)
     listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -64,7 +72,12 @@ def listen(address: str, port: int) -> socket.socket:
 
 
 class ConnectionGuard:
-    """Checks what is served on ``listening`` by a server that is started within ``guarding()``."""
+    """Checks the requests and messages to a server that is started within ``guarding()``.
+
+    Args:
+        listening: Socket that the server uses.
+        access: Decides on requests.
+    """
 
     def __init__(self, listening: socket.socket, access: AccessPolicy):
         self._socket, self._access = listening, access
@@ -76,7 +89,7 @@ class ConnectionGuard:
         logging.getLogger("websockets.server").setLevel(logging.CRITICAL)
 
     def set_controls(self, gui: Any) -> None:
-        """Set the gui of viser whose controls check the values they are sent."""
+        """Set the gui of viser, whose controls define which values are accepted."""
         self._controls = gui._gui_input_handle_from_uuid
 
     @contextmanager

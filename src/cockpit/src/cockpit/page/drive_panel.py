@@ -49,7 +49,14 @@ class DriveCommands(Protocol):
 
 
 class DrivePanel:
-    """Creates the controls; ``guarded`` wraps their callbacks to report exceptions."""
+    """Creates the controls of the Drive tab.
+
+    Args:
+        gui: The gui of viser.
+        tab: The tab's context.
+        driver: Carries out the actions.
+        guarded: Wraps callbacks of controls so that exceptions are reported on the page.
+    """
 
     def __init__(self, gui, tab, driver: DriveCommands, guarded: Callable[[Callable], Callable]):
         self._gui, self._driver, self._guarded = gui, driver, guarded
@@ -62,13 +69,24 @@ class DrivePanel:
         self._build_keys()
 
     def offer_world(self, models: Sequence[str], joints: Sequence[str]) -> None:
-        """Offer models to move and joints to open."""
+        """Set the choices of models and joints.
+
+        Args:
+            models: Models that can be moved.
+            joints: Joints of doors and drawers.
+        """
         _offer(self.model, models)
         _offer(self.joint, joints)
         self._joints.visible = bool(joints)
 
     def offer(self, robots: Sequence[str], topics: Sequence[str], places: Sequence[str]) -> None:
-        """Offer robots with a goal topic, velocity topics with a subscriber, and places of deliveries."""
+        """Set the choices of robots, topics and places.
+
+        Args:
+            robots: Namespaces with a goal topic.
+            topics: Velocity topics with a subscriber.
+            places: Places of deliveries.
+        """
         _offer(self.robot, robots)
         _offer(self.topic, topics)
         for end in (self.source, self.destination):

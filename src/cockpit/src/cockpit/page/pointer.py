@@ -15,9 +15,11 @@ PREVIEW, COLOUR, HEIGHT = "pointer", (46, 160, 67), 0.08
 
 
 class FloorPointer:
-    """Calls ``on_pose`` with x, y [m] and yaw [rad] in the fixed frame and the client id.
+    """Converts mouse clicks and drags on the floor to poses.
 
-    The yaw is None for a click without a drag. ``floor`` is the handle of the mesh that receives clicks.
+    Args:
+        floor: Handle of the mesh that receives clicks.
+        drawer: Draws the preview of the pose.
     """
 
     def __init__(self, floor: Any, drawer: SceneRenderer):
@@ -26,7 +28,12 @@ class FloorPointer:
         self._start: Optional[Point] = None
 
     def aim(self, on_pose: Optional[Callable[[float, float, Optional[float], int], None]]) -> None:
-        """Start pointing; None returns the mouse to the camera."""
+        """Start or end pointing.
+
+        Args:
+            on_pose: Called with x, y [m] and yaw [rad] in the fixed frame, and the client id; the yaw is None
+                for a click without a drag. None ends pointing: the mouse moves the camera again.
+        """
         was_on, self._on_pose = self._on_pose is not None, on_pose
         if on_pose is not None and not was_on:
             self._floor.on_drag("left")(self._dragged)

@@ -38,14 +38,24 @@ class _SceneNode:
 
 
 class SceneRenderer:
-    """Keeps the shapes of all layers in the scene."""
+    """Keeps the shapes of all layers in the scene.
+
+    Args:
+        scene: The scene of viser.
+    """
 
     def __init__(self, scene):
         self._scene = scene
         self._shown: Dict[Tuple[str, str], _SceneNode] = {}
 
     def show(self, layer: str, update: LayerUpdate, now: float = 0.0) -> None:
-        """Apply an update of a layer; ``now`` is steady-clock time [s]."""
+        """Apply an update of a layer.
+
+        Args:
+            layer: Name of the layer.
+            update: New and removed shapes.
+            now: Steady-clock time, from which lifetimes count [s].
+        """
         names = {part.name for part in update.parts}
         for key in list(self._shown):
             if (

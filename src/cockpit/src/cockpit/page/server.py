@@ -21,13 +21,19 @@ CAMERA, LOOK_AT = np.array((-5.5, -12.5, 14.5)), np.array((1.2, -0.6, 0.0))
 
 
 class Page:
-    """Serves the page. Raises PortError.
+    """Serves the page.
+
+    Args:
+        address: Address to bind.
+        port: Port; 0 selects a free one.
 
     Attributes:
         gui: The gui of viser, shared by all clients.
         scene: The scene of viser, shared by all clients.
         url: Address of the page with the token.
 
+    Raises:
+        PortError: The page cannot be served at the address.
     """
 
     def __init__(self, address: str, port: int):
@@ -55,6 +61,14 @@ class Page:
         return self._is_watched.is_set()
 
     def wait_for_client(self, seconds: float) -> bool:
+        """Wait until the page is open in a browser.
+
+        Args:
+            seconds: Longest time to wait [s].
+
+        Returns:
+            Whether the page is open.
+        """
         return self._is_watched.wait(seconds)
 
     def clients(self) -> List[viser.ClientHandle]:
@@ -65,7 +79,12 @@ class Page:
         self._on_leave.append(do)
 
     def notify(self, text: str, is_bad: bool = False) -> None:
-        """Show a notification on every page, which closes automatically."""
+        """Show a notification on every open page, which closes automatically.
+
+        Args:
+            text: The notification.
+            is_bad: Whether it reports an error.
+        """
         for client in self.clients():
             client.add_notification(
                 "Something went wrong" if is_bad else NAME,
@@ -79,7 +98,12 @@ class Page:
         return self._server.atomic()
 
     def frame_view(self, low_xy: np.ndarray, high_xy: np.ndarray) -> None:
-        """Set the initial camera of new clients to show the area between two corners (2,) [m]."""
+        """Set the initial camera of new clients so that it shows an area.
+
+        Args:
+            low_xy: Corner (2,) with the smallest coordinates [m].
+            high_xy: Corner (2,) with the largest coordinates [m].
+        """
         middle = np.append(0.5 * (low_xy + high_xy), 0.0)
         away = 0.5 * float(np.linalg.norm(high_xy - low_xy)) / np.tan(0.5 * FIELD_OF_VIEW)
         direction = (CAMERA - LOOK_AT) / np.linalg.norm(CAMERA - LOOK_AT)

@@ -6,7 +6,13 @@ WIDTH = 420
 
 
 class ToolPanel:
-    """Calls ``on_switch`` with a tool's name and whether it should be open."""
+    """The Tools tab.
+
+    Args:
+        gui: The gui of viser.
+        tools: Name and title of each tool.
+        on_switch: Called with a tool's name and whether it should be open.
+    """
 
     def __init__(self, gui, tools: Iterable[Tuple[str, str]], on_switch: Callable[[str, bool], None]):
         """Create a checkbox for each (name, title) in ``tools``."""
@@ -23,12 +29,23 @@ class ToolPanel:
         self._boxes[name].value = True
 
     def window(self, title: str, width: int) -> Any:
-        """Create a window; controls are created within its context."""
+        """Create a window; controls are created within its context.
+
+        Args:
+            title: Title of the window.
+            width: Width of the window [pixels].
+        """
         return ToolWindow(self._gui, title, width)
 
 
 class ToolWindow:
-    """A movable window of the page, ``width`` pixels wide."""
+    """A movable window of the page.
+
+    Args:
+        gui: The gui of viser.
+        title: Title of the window.
+        width: Width of the window [pixels].
+    """
 
     def __init__(self, gui, title: str, width: int = WIDTH):
         self._panel = gui.add_panel()

@@ -8,7 +8,13 @@ AUTOMATIC = "automatic"
 
 
 class ViewPanel:
-    """A checkbox for each topic of a layer, the fixed frame, and the camera."""
+    """A checkbox for each topic of a layer, the fixed frame, and the camera.
+
+    Args:
+        gui: The gui of viser.
+        tab: The tab's context.
+        on_cut: Called with the height above which the world is hidden [m].
+    """
 
     def __init__(self, gui, tab, on_cut: Callable[[float], None]):
         """Create the controls in ``tab``; ``on_cut`` receives the cut height [m]."""
@@ -40,7 +46,12 @@ class ViewPanel:
             self.fixed.options = (AUTOMATIC, *names)
 
     def offer(self, topic: str, layer: DisplayLayer) -> None:
-        """Add a checkbox for a topic in its last state."""
+        """Add a checkbox for a topic, with its state when it was last listed.
+
+        Args:
+            topic: Name of the topic.
+            layer: Layer that draws it.
+        """
         if topic in self._boxes:
             return
         if layer.title not in self._folders:

@@ -12,7 +12,13 @@ STILL = 1e-5
 
 
 class LinkView:
-    """The visual parts of a link: a scene node with a mesh for each colour."""
+    """The visual parts of a link: a scene node with a mesh for each colour.
+
+    Args:
+        scene: The scene of viser.
+        path: Name of the scene node.
+        parts: Visual parts of the link.
+    """
 
     def __init__(self, scene, path: str, parts: Tuple[VisualPart, ...]):
         self._scene, self._path = scene, path
@@ -22,7 +28,11 @@ class LinkView:
         self._pose: Optional[np.ndarray] = None
 
     def draw(self, height: float) -> None:
-        """Draw the parts, cut at ``height`` in the world [m]."""
+        """Draw the parts.
+
+        Args:
+            height: Height in the world above which they are cut off [m].
+        """
         for surface in self._surfaces:
             surface.remove()
         cut = tuple(cut_at(part, height) for part in self.parts)
@@ -39,7 +49,11 @@ class LinkView:
         ]
 
     def move(self, pose: Optional[np.ndarray]) -> None:
-        """Set the pose (4, 4) in the fixed frame; None hides the link."""
+        """Move the link.
+
+        Args:
+            pose: Pose (4, 4) in the fixed frame; None hides the link.
+        """
         if self.node.visible != (pose is not None):
             self.node.visible = pose is not None
         if pose is None or (self._pose is not None and np.abs(pose - self._pose).max() < STILL):
@@ -92,29 +106,56 @@ class WorldView:
         self.joints = {name: joint for name, joint in self.joints.items() if joint.model != model}
 
     def cut(self, height: float) -> None:
-        """Hide everything above ``height`` [m]: roofs and the upper part of walls."""
+        """Hide roofs and the upper part of walls.
+
+        Args:
+            height: Height above which everything is hidden [m].
+        """
         self._height = height
         for link in self._links.values():
             link.draw(height)
 
     def place(self, name: str, pose_in_world: np.ndarray) -> None:
+        """Set the pose of a link; a link that is not displayed is ignored.
+
+        Args:
+            name: Name of the link, ``model::link``.
+            pose_in_world: Pose (4, 4).
+        """
         if name in self._poses:
             self._poses[name] = pose_in_world
 
     def move(self, model: str, motion: np.ndarray) -> None:
-        """Move a model by ``motion`` (4, 4) in the world frame."""
+        """Move a model.
+
+        Args:
+            model: Name of the model.
+            motion: Motion (4, 4) in the world frame.
+        """
         for name, link in self._links.items():
             if link.parts[0].model == model:
                 self._poses[name] = motion @ self._poses[name]
 
     def update(self, world_in_fixed: Optional[np.ndarray]) -> None:
+        """Move all links to their present poses.
+
+        Args:
+            world_in_fixed: Pose (4, 4) of the world in the fixed frame; None hides the world.
+        """
         for name, link in self._links.items():
             shown = world_in_fixed is not None and self.is_shown
             link.move(world_in_fixed @ self._poses[name] if shown else None)
 
 
 class RobotView:
-    """The links of a robot, placed by tf; ``prefix`` is its tf_prefix."""
+    """The links of a robot, placed by tf.
+
+    Args:
+        scene: The scene of viser.
+        name: Name of the robot's scene node.
+        description: Visual parts of its links.
+        prefix: Its tf_prefix.
+    """
 
     def __init__(self, scene, name: str, description: SceneDescription, prefix: str):
         self._prefix = f"{prefix.strip('/')}/" if prefix.strip("/") else ""
@@ -125,6 +166,13 @@ class RobotView:
             self._links[link].draw(np.inf)
 
     def update(self, frames: FrameTree, fixed: str, is_shown: bool) -> None:
+        """Move all links to their present poses.
+
+        Args:
+            frames: Tree of frames.
+            fixed: Fixed frame.
+            is_shown: Whether the robot is displayed.
+        """
         for name, view in self._links.items():
             view.move(frames.pose(self._prefix + name, fixed) if is_shown else None)
 

@@ -1,1 +1,1 @@
-"""The parts of the cockpit that speak ROS."""
+"""The parts of the cockpit that use ROS."""

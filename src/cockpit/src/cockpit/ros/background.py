@@ -18,7 +18,11 @@ class BackgroundCall:
         return self._thread is not None and self._thread.is_alive()
 
     def start(self, do: Callable[[], Any]) -> None:
-        """Start a call. Raises CockpitError if the previous one is still running."""
+        """Start a call.
+
+        Raises:
+            CockpitError: The previous call is still running.
+        """
         if self.is_busy:
             raise CockpitError("the previous request is still running; wait for its answer")
         self.restart(do)
@@ -31,7 +35,11 @@ class BackgroundCall:
         self._thread.start()
 
     def results(self) -> List[Any]:
-        """Return the new result, if any, as a list. Raises the exception of the call."""
+        """Return the new result, if any, as a list.
+
+        Raises:
+            Exception: The exception of the call.
+        """
         if not self._done:
             return []
         error, result = self._done.pop()

@@ -15,7 +15,17 @@ LISTENER_SECONDS, POLL_SECONDS = 1.0, 0.02
 
 
 def call(name: str, kind: Any, *arguments: Any, seconds: float = ANSWER_SECONDS) -> Any:
-    """Call a service. Raises CockpitError if there is no response within ``seconds``."""
+    """Call a service.
+
+    Args:
+        name: Name of the service.
+        kind: Type of the service.
+        arguments: Fields of the request.
+        seconds: Longest time to wait for the response [wall s].
+
+    Raises:
+        CockpitError: The service is missing, failed, or did not respond in time.
+    """
     try:
         rospy.wait_for_service(name, SERVICE_SECONDS)
         request = args_kwds_to_message(kind._request_class, arguments, {})
@@ -25,7 +35,12 @@ def call(name: str, kind: Any, *arguments: Any, seconds: float = ANSWER_SECONDS)
 
 
 def wait_for_subscribers(publisher: rospy.Publisher, listeners: int) -> None:
-    """Wait until ``listeners`` subscribers are connected, for LISTENER_SECONDS at most."""
+    """Wait until subscribers are connected, for LISTENER_SECONDS at most.
+
+    Args:
+        publisher: The publisher.
+        listeners: Number of subscribers to wait for.
+    """
     deadline = time.monotonic() + LISTENER_SECONDS
     while time.monotonic() < deadline and publisher.get_num_connections() < listeners:
         time.sleep(POLL_SECONDS)

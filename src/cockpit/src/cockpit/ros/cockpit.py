@@ -37,7 +37,12 @@ JITTER_SECONDS = 0.1
 
 
 class Cockpit:
-    """Connects the page to the ROS graph."""
+    """Connects the page to the ROS graph.
+
+    Args:
+        page: The page.
+        reader: Reads worlds and robots in child processes.
+    """
 
     def __init__(self, page: Page, reader: SceneReader):
         self._page = page
@@ -182,7 +187,12 @@ class Cockpit:
 
 
 def frames_drawn(frames: FrameTree, fixed: str) -> LayerUpdate:
-    """Draw the axes and names of all frames connected to the fixed frame."""
+    """Draw the axes and names of all frames that are connected to the fixed frame.
+
+    Args:
+        frames: Tree of frames.
+        fixed: Fixed frame.
+    """
     found = [(name, frames.pose(name, fixed)) for name in frames.names()]
     poses = [(name, pose) for name, pose in found if pose is not None]
     if not poses:

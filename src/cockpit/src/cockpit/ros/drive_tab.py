@@ -35,7 +35,16 @@ MISSION, ERRAND = "/pick_objects/mission_state", "/pick_objects/state"
 
 
 class DriveTab:
-    """Carries out the actions of the panel (cockpit.page.drive_panel.DriveCommands)."""
+    """Carries out the actions of the panel (cockpit.page.drive_panel.DriveCommands).
+
+    Args:
+        graph: Client of the ROS graph.
+        frames: Tree of frames.
+        pointer: Converts mouse clicks to poses.
+        world: The displayed world.
+        notify: Shows a notification on the page.
+        fixed: Returns the fixed frame.
+    """
 
     def __init__(
         self,
@@ -57,10 +66,21 @@ class DriveTab:
         self._panel: Optional[DrivePanel] = None
 
     def build(self, gui, tab, guarded) -> None:
+        """Create the panel.
+
+        Args:
+            gui: The gui of viser.
+            tab: The tab's context.
+            guarded: Wraps callbacks of controls so that exceptions are reported on the page.
+        """
         self._panel = DrivePanel(gui, tab, self, guarded)
 
     def refresh(self) -> None:
-        """Refresh the panel. Raises CockpitError."""
+        """Update the choices of the panel, and subscribe to the mission's state.
+
+        Raises:
+            CockpitError: The ROS master does not answer.
+        """
         assert self._panel is not None
         orders, view = self._commands, self._world.view
         self._panel.offer(orders.robots(), orders.velocity_topics(), orders.places())
@@ -71,7 +91,11 @@ class DriveTab:
                 self._feeds[topic] = TopicFeed(topic, kind._type)
 
     def update(self) -> None:
-        """Refresh the panel. Raises CockpitError."""
+        """Show the new states of the mission.
+
+        Raises:
+            CockpitError: A message is malformed.
+        """
         assert self._panel is not None
         for topic in (MISSION, ERRAND):
             for message in self._feeds[topic].messages() if topic in self._feeds else ():
@@ -87,7 +111,7 @@ class DriveTab:
         self._feeds.clear()
 
     def base_frame(self) -> Optional[str]:
-        """Return the base frame of the selected robot."""
+        """Return the base frame of the selected robot; None if it has no transform."""
         assert self._panel is not None
         prefix, known = self._panel.robot.value.strip("/"), set(self._frames.names())
         names = [f"{prefix}/{base}".lstrip("/") for base in BASE_FRAMES]
@@ -99,6 +123,15 @@ class DriveTab:
         self._pointer.aim(None if mode == LOOK else self._pointed)
 
     def press(self, key: str, client: int) -> None:
+        """Drive the selected robot by a key.
+
+        Args:
+            key: Key of turtlebot_teleop.
+            client: Client id of the page on which it is held.
+
+        Raises:
+            CockpitError: No node subscribes to a velocity topic.
+        """
         assert self._panel is not None
         if self._panel.topic.value == NO_SUBSCRIBER:
             raise CockpitError(

@@ -18,7 +18,7 @@ MOST_WAITING = 2000
 
 
 class TopicFeed:
-    """A subscription whose messages are kept serialized until they are read, so that receiving only copies.
+    """A subscription that stores serialized messages until they are read, so that receiving them only copies.
 
     Attributes:
         topic: Name of the topic.
@@ -48,13 +48,24 @@ class TopicFeed:
         self._subscriber = rospy.Subscriber(topic, rospy.AnyMsg, self._on_message, tcp_nodelay=True)
 
     def messages(self) -> List[Any]:
-        """Return the messages received since the last call. Raises CockpitError if all are malformed."""
+        """Return the messages received since the last call.
+
+        Raises:
+            CockpitError: All of them are malformed.
+        """
         return [message for _, message, _ in self.stamped_messages()]
 
     take = renamed_method("take", "messages")
 
     def stamped_messages(self) -> List[Tuple[float, Any, str]]:
-        """Return (steady-clock time of arrival [s], message, publishing node) for each unread message."""
+        """Return the messages received since the last call with their origin.
+
+        Returns:
+            Steady-clock time of arrival [s], message and publishing node of each message.
+
+        Raises:
+            CockpitError: All of them are malformed.
+        """
         taken, trouble = [], ""
         while self._waiting:
             at, content, sender = self._waiting.popleft()
@@ -81,7 +92,10 @@ class TopicFeed:
 
 
 class GraphClient:
-    """Client of the ROS master; caches the lists of topics, nodes and services for a second."""
+    """Client of the ROS master; caches the lists of topics, nodes and services for a second.
+
+    Methods that return something of the graph raise CockpitError if the master does not answer.
+    """
 
     def __init__(self):
         self._master = rosgraph.Master(rospy.get_name())
@@ -91,27 +105,27 @@ class GraphClient:
         self._state: Tuple[Dict[str, List[str]], ...] = ({}, {}, {})
 
     def topics(self) -> Dict[str, str]:
-        """Return the type of each topic with a publisher or a subscriber. Raises CockpitError."""
+        """Return the type of each topic with a publisher or a subscriber."""
         self._ask()
         return dict(self._types)
 
     def publishers(self) -> Dict[str, List[str]]:
-        """Return the publishing nodes of each topic. Raises CockpitError."""
+        """Return the publishing nodes of each topic."""
         self._ask()
         return dict(self._state[0])
 
     def subscribers(self) -> Dict[str, List[str]]:
-        """Return the subscribing nodes of each topic. Raises CockpitError."""
+        """Return the subscribing nodes of each topic."""
         self._ask()
         return dict(self._state[1])
 
     def services(self) -> Dict[str, List[str]]:
-        """Return the providers of each service. Raises CockpitError."""
+        """Return the providers of each service."""
         self._ask()
         return dict(self._state[2])
 
     def address(self, service: str) -> Optional[str]:
-        """Return the URI of a service, which changes when its node restarts, or None. Raises CockpitError."""
+        """Return the URI of a service, which changes when its node restarts; None if there is no service."""
         return self._find(lambda: self._master.lookupService(service))
 
     def is_there(self) -> bool:
@@ -123,18 +137,32 @@ class GraphClient:
         return True
 
     def feed(self, topic: str, kind: Optional[str] = None, all_of_them: bool = False) -> TopicFeed:
-        """Subscribe to a topic; ``kind`` defaults to its published type. Raises CockpitError."""
+        """Subscribe to a topic.
+
+        Args:
+            topic: Name of the topic.
+            kind: Message type, "package/Type"; None for the published type.
+            all_of_them: Whether every unread message is stored instead of the newest only.
+
+        Raises:
+            CockpitError: There is no such topic, or its message type is not installed.
+        """
         kind = kind or self.topics().get(topic)
         if kind is None:
             raise CockpitError(f"there is no topic {topic}")
         return TopicFeed(topic, kind, all_of_them)
 
     def parameter(self, name: str, default: Any = None) -> Any:
-        """Return a parameter from the master (rospy answers "/" from its cache). Raises CockpitError."""
+        """Return a parameter from the master; rospy would answer "/" from its cache.
+
+        Args:
+            name: Name of the parameter or namespace.
+            default: Value of a parameter that does not exist.
+        """
         return self._find(lambda: self._master.getParam(rospy.resolve_name(name)), default)
 
     def parameter_names(self) -> List[str]:
-        """Raises CockpitError."""
+        """Return the names of all parameters."""
         return _asking(rospy.get_param_names)
 
     def _find(self, ask: Callable[[], Any], default: Any = None) -> Any:

@@ -37,7 +37,14 @@ BOX = """<sdf version="1.6"><model name="{name}"><link name="box">
 
 
 class GraphCommands:
-    """Sends commands; each raises CockpitError without a subscriber or service."""
+    """Sends commands to the ROS graph.
+
+    All methods raise CockpitError if the master does not answer, if there is no subscriber or service, or if
+    the service fails.
+
+    Args:
+        graph: Client of the ROS graph.
+    """
 
     def __init__(self, graph: GraphClient):
         self._graph = graph
@@ -45,11 +52,11 @@ class GraphCommands:
         self._boxes = 0
 
     def robots(self) -> List[str]:
-        """Return the namespaces with a goal topic. Raises CockpitError."""
+        """Return the namespaces with a goal topic."""
         return sorted(name[: -len(GOAL)] for name in self._graph.subscribers() if name.endswith(f"/{GOAL}"))
 
     def velocity_topics(self) -> List[str]:
-        """Return the velocity topics with a subscriber, preferred ones first. Raises CockpitError."""
+        """Return the velocity topics with a subscriber, preferred ones first."""
         types, own = self._graph.topics(), rospy.get_name()
         found = [
             name
@@ -65,11 +72,29 @@ class GraphCommands:
         return sorted(found, key=lambda name: (rank(name), len(name), name))
 
     def goal(self, robot: str, frame: str, x: float, y: float, yaw: float) -> None:
+        """Send a navigation goal (move_base_simple/goal).
+
+        Args:
+            robot: Namespace of the robot, ending with a slash.
+            frame: Frame of the pose.
+            x: Position [m].
+            y: Position [m].
+            yaw: Heading [rad].
+        """
         message = PoseStamped(pose=_pose(x, y, yaw))
         message.header.frame_id, message.header.stamp = frame, rospy.get_rostime()
         self._send(robot + GOAL, message)
 
     def estimate(self, robot: str, frame: str, x: float, y: float, yaw: float) -> None:
+        """Send a pose estimate with rviz's covariance (initialpose).
+
+        Args:
+            robot: Namespace of the robot, ending with a slash.
+            frame: Frame of the pose.
+            x: Position [m].
+            y: Position [m].
+            yaw: Heading [rad].
+        """
         message = PoseWithCovarianceStamped()
         message.header.frame_id, message.header.stamp = frame, rospy.get_rostime()
         message.pose.pose = _pose(x, y, yaw)
@@ -77,6 +102,13 @@ class GraphCommands:
         self._send(robot + ESTIMATE, message)
 
     def point(self, frame: str, x: float, y: float) -> None:
+        """Publish a point on the floor (clicked_point).
+
+        Args:
+            frame: Frame of the point.
+            x: Position [m].
+            y: Position [m].
+        """
         message = PointStamped()
         message.header.frame_id, message.header.stamp = frame, rospy.get_rostime()
         message.point.x, message.point.y = x, y
@@ -86,11 +118,18 @@ class GraphCommands:
         self._send(robot + CANCEL, GoalID())
 
     def places(self) -> List[str]:
-        """Return the names of places of deliveries. Raises CockpitError."""
+        """Return the names of places of deliveries."""
         return list(self._graph.parameter(f"{MISSIONS}/places", []))
 
     def deliver(self, object_name: str, source: str, destination: str, joins: bool) -> None:
-        """Request a delivery; ``joins`` adds it to the running mission instead of starting one."""
+        """Request a delivery.
+
+        Args:
+            object_name: Name of the object.
+            source: Place where it is picked up.
+            destination: Place where it is dropped off.
+            joins: Whether the delivery is added to the running mission; otherwise it starts one.
+        """
         delivery = Delivery(object=object_name, source=source, destination=destination)
         if joins:
             _check(call(f"{MISSIONS}/add_delivery", AddDelivery, delivery))
@@ -129,7 +168,15 @@ class GraphCommands:
         _check(answer)
 
     def drop_box(self, x: float, y: float) -> str:
-        """Spawn a box at x, y in the world frame [m] and return the name of its model."""
+        """Spawn a box.
+
+        Args:
+            x: Position in the world frame [m].
+            y: Position in the world frame [m].
+
+        Returns:
+            Name of its model.
+        """
         self._boxes += 1
         name = f"box_of_cockpit_{int(time.time()) % 100000}_{self._boxes}"
         pose = _pose(x, y, 0.0)
@@ -169,7 +216,13 @@ class GraphCommands:
         return _matrix(state.pose) @ inverse(before)
 
     def set_joint(self, model: str, joint: str, position: float) -> None:
-        """Set the joint position of a door or a drawer [rad or m]."""
+        """Set the position of a joint of a door or a drawer.
+
+        Args:
+            model: Name of the model.
+            joint: Name of the joint in the model.
+            position: Position [rad or m].
+        """
         answer = call(
             "/gazebo/set_model_configuration",
             gazebo_msgs.srv.SetModelConfiguration,

@@ -49,13 +49,22 @@ class LayerManager:
         self.screens: Dict[str, Any] = {}
 
     def offers(self) -> Dict[str, DisplayLayer]:
-        """Return the layer of each published topic. Raises CockpitError."""
+        """Return the layer of each published topic that a layer can draw.
+
+        Raises:
+            CockpitError: The ROS master does not answer.
+        """
         published, types = self._graph.publishers(), self._graph.topics()
         known = ((topic, self._by_type.get(types.get(topic, ""))) for topic in sorted(published))
         return {topic: layer for topic, layer in known if layer is not None}
 
     def choose(self, wanted: Dict[str, bool], offers: Dict[str, DisplayLayer]) -> None:
-        """Subscribe to the enabled topics only."""
+        """Subscribe to the enabled topics only.
+
+        Args:
+            wanted: Whether each listed topic is enabled.
+            offers: Layer of each published topic.
+        """
         for topic in [topic for topic in self._shown if not wanted.get(topic)]:
             self._close(topic)
         for topic, is_on in wanted.items():
@@ -112,7 +121,11 @@ class LayerManager:
 
 
 def layer_type(graph: GraphClient, topic: str) -> str:
-    """Raises CockpitError."""
+    """Return the type of a topic.
+
+    Raises:
+        CockpitError: There is no such topic, or the ROS master does not answer.
+    """
     kind: Optional[str] = graph.topics().get(topic)
     if kind is None:
         raise CockpitError("the topic no longer exists")

@@ -14,12 +14,20 @@ LONGEST = 20_000
 
 
 def message_class(kind: str) -> Type[Any]:
-    """Find the class of a type. Raises CockpitError if it is not installed."""
+    """Return the class of a message type.
+
+    Raises:
+        CockpitError: The type is not installed.
+    """
     return _found(roslib.message.get_message_class, kind)
 
 
 def service_class(kind: str) -> Type[Any]:
-    """Find the class of a type. Raises CockpitError if it is not installed."""
+    """Return the class of a service type.
+
+    Raises:
+        CockpitError: The type is not installed.
+    """
     return _found(roslib.message.get_service_class, kind)
 
 
@@ -29,7 +37,15 @@ def template(kind: Type[Any]) -> str:
 
 
 def filled(kind: Type[Any], text: str) -> Any:
-    """Build a message from YAML, in which ``now`` is the current time. Raises CockpitError."""
+    """Build a message from YAML.
+
+    Args:
+        kind: Class of the message.
+        text: Its fields as YAML; ``now`` is the current time.
+
+    Raises:
+        CockpitError: The text does not match the type.
+    """
     if len(text) > LONGEST:
         raise CockpitError(f"longer than {LONGEST} characters")
     message = kind()

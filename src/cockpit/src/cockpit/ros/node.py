@@ -121,13 +121,21 @@ def _wait_for_nodes() -> None:
 
 
 def check_tool(name: Optional[str]) -> None:
-    """Raise CockpitError for a name that is no tool."""
+    """Check the name of a tool; None is valid.
+
+    Raises:
+        CockpitError: There is no such tool.
+    """
     if name is not None and name not in names():
         raise CockpitError(f"--tool: unknown tool '{name}'; expected one of {', '.join(names())}")
 
 
 def address_of(text: str) -> Tuple[str, int]:
-    """Parse ``[ADDRESS:]PORT``. Raises PortError."""
+    """Parse ``[ADDRESS:]PORT``.
+
+    Raises:
+        PortError: The text has another form.
+    """
     address, _, port = text.rpartition(":")
     if not port.isascii() or not port.isdigit() or int(port) > 65535:
         raise PortError(

@@ -43,7 +43,18 @@ def main() -> None:
 
 
 def chosen(program: str, arguments: List[str]) -> Tuple[Optional[str], Tuple[str, ...]]:
-    """Return the tool and its arguments; ``rqt -s rqt_graph`` is ``rqt_graph``. Raises PlanarError."""
+    """Return the tool that a command line of rqt selects.
+
+    Args:
+        program: Name of the program, ``rqt`` or one such as ``rqt_graph``.
+        arguments: Its arguments; ``rqt -s rqt_graph`` is ``rqt_graph``.
+
+    Returns:
+        Name of the tool, None for the page alone, and the tool's arguments.
+
+    Raises:
+        PlanarError: The tool is unknown.
+    """
     words = list(arguments)
     for option in STANDALONE:
         if option in words:

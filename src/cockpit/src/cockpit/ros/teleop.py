@@ -30,7 +30,13 @@ class PageTeleop:
         threading.Thread(target=self._work, daemon=True).start()
 
     def press(self, key: str, client: int, topic: str) -> None:
-        """Handle a key or button that ``client`` holds; called repeatedly while it is held."""
+        """Handle a key or button; called repeatedly while it is held.
+
+        Args:
+            key: Key of turtlebot_teleop.
+            client: Client id of the page on which it is held.
+            topic: Velocity topic.
+        """
         with self._lock:
             if self._publisher is None or self._publisher.resolved_name != rospy.resolve_name(topic):
                 self._stop()

@@ -9,7 +9,13 @@ from planar.deprecation import renamed_method
 
 
 class ToolContext:
-    """What a tool is given: the page, the ROS graph, a lock and its arguments.
+    """The page, the ROS graph, a lock and the arguments of a tool.
+
+    Args:
+        gui: The gui of viser.
+        graph: Client of the ROS graph.
+        notify: Shows a notification on the page; called with the text and whether it reports an error.
+        words: Arguments of the command line.
 
     Attributes:
         gui: The gui of viser; controls made during ``Tool.build`` appear in the tool's window.
@@ -84,7 +90,11 @@ class Tool(Protocol):
     def build(self) -> None: ...
 
     def update(self, now: float) -> None:
-        """Refresh the window; ``now`` is steady-clock time [s]."""
+        """Refresh the window.
+
+        Args:
+            now: Steady-clock time [s].
+        """
 
     def pause(self) -> None: ...
 

@@ -21,7 +21,12 @@ class _OpenTool:
 
 
 class Toolbox:
-    """Opens, closes and updates tools."""
+    """Opens, closes and updates tools.
+
+    Args:
+        page: The page.
+        graph: Client of the ROS graph.
+    """
 
     def __init__(self, page: Page, graph: GraphClient):
         self._page, self._graph = page, graph
@@ -37,7 +42,12 @@ class Toolbox:
         return list(self._kinds)
 
     def open(self, name: str, words: Tuple[str, ...] = ()) -> None:
-        """Open a tool with arguments."""
+        """Open a tool.
+
+        Args:
+            name: Name of the tool.
+            words: Arguments of the command line for the tool.
+        """
         self._words[name] = words
         self._panel.open(name)
 

@@ -12,7 +12,14 @@ KIND = "tf2_msgs/TFMessage"
 
 
 class TransformFeed:
-    """Updates ``frames`` while subscribed; ``counts`` has the transforms received per child frame."""
+    """Fills a tree of frames while it is subscribed to /tf and /tf_static.
+
+    Args:
+        frames: The tree.
+
+    Attributes:
+        counts: Transforms received so far, by child frame.
+    """
 
     def __init__(self, frames: FrameTree):
         self._frames = frames
@@ -28,7 +35,11 @@ class TransformFeed:
             self._feeds = []
 
     def update(self) -> None:
-        """Store the new transforms. Raises CockpitError afterwards if one was malformed."""
+        """Store the new transforms.
+
+        Raises:
+            CockpitError: One of them was malformed; the others are stored.
+        """
         errors = [error for feed in self._feeds for error in self._update_from(feed)]
         if errors:
             raise CockpitError(errors[0])

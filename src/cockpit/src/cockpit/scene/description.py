@@ -18,9 +18,9 @@ class VisualPart:
         model: Model of the link; empty for a robot.
         link: Name of the link.
         pose: Pose (4, 4) of the link in the world.
-        vertices: (N, 3) in the link frame [m].
-        triangles: (M, 3) indices of vertices.
-        colour: Colour.
+        vertices: Vertices (N, 3) in the link frame [m].
+        triangles: Vertex indices (M, 3).
+        colour: Colour of all triangles.
         moves: Whether the physics moves the link.
     """
 
@@ -35,7 +35,14 @@ class VisualPart:
 
 @dataclass(frozen=True)
 class DisplayJoint:
-    """The joint of a door or a drawer, with its closed and its open position [rad or m]."""
+    """The joint of a door or a drawer.
+
+    Attributes:
+        model: Name of the model.
+        name: Name of the joint in the model.
+        shut: Closed position [rad or m].
+        wide: Open position [rad or m].
+    """
 
     model: str
     name: str
@@ -43,7 +50,11 @@ class DisplayJoint:
     wide: float
 
     def opened(self, share: float) -> float:
-        """Return the position at an opening from 0 to 1."""
+        """Return the position of an opening [rad or m].
+
+        Args:
+            share: 0 is closed, 1 is open.
+        """
         return self.shut + share * (self.wide - self.shut)
 
 
@@ -97,7 +108,12 @@ class SceneDescription:
 
 
 def cut_at(part: VisualPart, height: float) -> VisualPart:
-    """Cut a part at ``height`` in the world [m]; the result may be empty."""
+    """Cut off the upper part of a visual; the result may be empty.
+
+    Args:
+        part: The visual.
+        height: Height in the world above which it is cut off [m].
+    """
     in_world = part.vertices @ part.pose[:3, :3].T + part.pose[:3, 3]
     if not len(in_world) or in_world[:, 2].max() <= height:
         return part
@@ -113,7 +129,11 @@ def _named(part: VisualPart) -> Tuple[str, str, np.ndarray]:
 
 
 def merged(parts: Tuple[VisualPart, ...]) -> List[Tuple[np.ndarray, np.ndarray, Colour]]:
-    """Merge the parts of one link to one mesh (vertices, triangles, colour) per colour."""
+    """Merge the visuals of one link to one mesh per colour.
+
+    Returns:
+        Vertices (N, 3) in the link frame [m], triangles (M, 3) and colour of each mesh.
+    """
     by_colour: Dict[Colour, List[VisualPart]] = {}
     for part in parts:
         if len(part.triangles):

@@ -31,12 +31,30 @@ FREELY, BEYOND = {"revolute": math.pi / 2.0, "prismatic": 0.5}, 1000.0
 
 
 def describe_world(path: Path, folders: Sequence[Path]) -> SceneDescription:
-    """Describe the bodies of an SDF file. Raises PlanarError."""
+    """Describe the bodies of an SDF file.
+
+    Args:
+        path: The file.
+        folders: Folders that are searched for ``model://`` URIs.
+
+    Raises:
+        PlanarError: The file cannot be used.
+    """
     return describe_bodies(load_world(path, folders))
 
 
 def describe_model(text: str, name: str, folders: Sequence[Path], find_file: FindFile) -> SceneDescription:
-    """Describe one model from its SDF or URDF, named ``name``, at the origin. Raises PlanarError."""
+    """Describe one model at the origin.
+
+    Args:
+        text: SDF or URDF of the model.
+        name: Name of the model.
+        folders: Folders that are searched for ``model://`` URIs.
+        find_file: Finds the files of package:// and model:// URIs in a URDF.
+
+    Raises:
+        PlanarError: The text cannot be used.
+    """
     if parse_text(text, name, ("sdf", "gazebo", "robot")).tag == "robot":
         return describe_bodies(read_prop(text, name, IDENTITY, find_file))
     return describe_bodies(read_model(text, name, IDENTITY, folders))
@@ -56,7 +74,15 @@ def describe_bodies(world: World) -> SceneDescription:
 
 
 def describe_robot(text: str, find_file: FindFile) -> SceneDescription:
-    """Describe the links of a robot's URDF, each in its link frame. Raises PlanarError."""
+    """Describe the links of a robot's URDF, each in its link frame.
+
+    Args:
+        text: The URDF.
+        find_file: Finds the files of package:// and model:// URIs.
+
+    Raises:
+        PlanarError: The text cannot be used.
+    """
     robot = parse_text(text, "robot_description", ("robot",))
     named = {child.name: _rgb(child) for child in robot.children("material")}
     collector = _Collector()
@@ -73,7 +99,11 @@ def describe_robot(text: str, find_file: FindFile) -> SceneDescription:
 
 
 def robot_joints(text: str) -> Dict[str, Tuple[str, np.ndarray]]:
-    """Return the parent link and the pose (4, 4) in it of each link of a URDF, with joints at zero."""
+    """Return how the links of a URDF are connected.
+
+    Returns:
+        Parent link, and pose (4, 4) in it with the joint at 0, by child link.
+    """
     robot = parse_text(text, "robot_description", ("robot",))
     return {
         joint.required("child").attribute("link"): (
@@ -100,7 +130,14 @@ class _Collector:
         self.warnings: List[str] = []
 
     def add(self, place: Tuple[str, str, np.ndarray, bool], shape: Shape, pose: np.ndarray, rgb) -> None:
-        """``place``: model, link, pose of the link, whether it moves; ``pose``: of the shape in the link."""
+        """Add the triangles of a shape.
+
+        Args:
+            place: Model, link, pose (4, 4) of the link in the world, and whether the link moves.
+            shape: The shape.
+            pose: Pose (4, 4) of the shape in the link frame.
+            rgb: Red, green, blue, 0 to 1; None for the colours of the mesh.
+        """
         model, link, link_pose, moves = place
         try:
             for vertices, triangles, colour in _coloured(shape, rgb):

@@ -15,7 +15,13 @@ BLUE, RED = ColorRGBA(0.1, 0.3, 1.0, 1.0), ColorRGBA(1.0, 0.2, 0.1, 1.0)
 def frontier_markers(
     open_frontiers: List[Frontier], unreachable: List[Frontier], frame_id: str
 ) -> MarkerArray:
-    """Markers of open frontiers in blue and of unreachable ones in red."""
+    """Return the frontiers as points, open ones in blue and unreachable ones in red.
+
+    Args:
+        open_frontiers: Frontiers with a viewpoint.
+        unreachable: Frontiers without one.
+        frame_id: Frame of the map.
+    """
     return MarkerArray([_points(0, open_frontiers, BLUE, frame_id), _points(1, unreachable, RED, frame_id)])
 
 

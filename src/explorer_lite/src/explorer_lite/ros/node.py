@@ -41,6 +41,9 @@ class Autostart:
     """Sends the node an ``explore`` goal at the start, and resumes the exploration after a crash.
 
     The goal is published on the action's topic, so other clients of the action see a normal goal.
+
+    Args:
+        return_to_start: Whether the robot returns to its start pose at the end.
     """
 
     def __init__(self, return_to_start: bool):

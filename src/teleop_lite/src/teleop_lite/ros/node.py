@@ -57,7 +57,11 @@ class TeleopDriver(Protocol):
         """Process a key."""
 
     def tick(self, now: float) -> Twist2:
-        """Velocity command for the next TICK_SECONDS; ``now``: time of a monotonic clock [s]."""
+        """Return the velocity command for the next TICK_SECONDS.
+
+        Args:
+            now: Time of a monotonic clock [s].
+        """
 
 
 @dataclass(frozen=True)
@@ -121,7 +125,16 @@ class KeyboardTeleop:
                 self._publish(self._teleop.tick(now))
 
     def run_script(self, script: KeyScript, pipe: Optional[Pipe]) -> None:
-        """Drive by a script, and by what else the pipe delivers, until both end, in ROS time."""
+        """Drive by a script in ROS time until the script and the pipe end.
+
+        Args:
+            script: Keys to press.
+            pipe: Further parts of the script; None for none.
+
+        Raises:
+            PlanarError: ROS time jumped back.
+            KeyScriptError: A part of the pipe's text is not a key with a duration.
+        """
         self._wait_for_subscriber()
         progress = ProgressPublisher()
         rate = rospy.Rate(1.0 / TICK_SECONDS)

@@ -1,1 +1,1 @@
-"""The simulated world in the picture: its looks, its robots, and what is spawned into it."""
+"""The simulated world on the page: its visual parts, its robots, and spawned models."""

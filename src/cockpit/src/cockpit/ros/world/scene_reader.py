@@ -40,13 +40,26 @@ class SceneReader:
     def read_in_background(
         self, requests: Sequence[SceneRequest], on_results: Callable[[List[SceneResult]], None]
     ) -> None:
-        """Read in a thread, which calls ``on_results``."""
+        """Read worlds and robots in a thread.
+
+        Args:
+            requests: What to read.
+            on_results: Called from that thread with the results, in the order of the requests.
+        """
         process, self._ready = self._ready, None
         threading.Thread(target=lambda: on_results(read_scenes(requests, process)), daemon=True).start()
 
 
 def read_scenes(requests: Sequence[SceneRequest], process: Optional[Popen] = None) -> List[SceneResult]:
-    """Read all requests in one child process, the given one or a new one."""
+    """Read worlds and robots in one child process.
+
+    Args:
+        requests: What to read.
+        process: A prepared child process; None to start one.
+
+    Returns:
+        A description for each request, or a text why it cannot be read.
+    """
     process = process or _start()
     try:
         output, errors = process.communicate(msgspec.msgpack.encode(requests), READING_SECONDS)

@@ -13,7 +13,14 @@ TYPE = "sim_bridge_msgs/SpawnedModels"
 
 
 class SpawnedModelsView:
-    """Shows the models that the simulator publishes."""
+    """Shows the models that the simulator publishes.
+
+    Args:
+        graph: Client of the ROS graph.
+        view: The displayed world.
+        reader: Reads the models in child processes.
+        notify: Shows a notification on the page.
+    """
 
     def __init__(
         self, graph: GraphClient, view: WorldView, reader: SceneReader, notify: Callable[[str], None]
@@ -24,14 +31,22 @@ class SpawnedModelsView:
         self._arrived: List[Tuple[List[Any], List[SceneResult]]] = []
 
     def poll(self) -> None:
-        """Subscribe to the topic of spawned models, if there is one. Raises CockpitError."""
+        """Subscribe to the topic of spawned models, if there is one.
+
+        Raises:
+            CockpitError: The ROS master does not answer.
+        """
         if self._feed is None:
             topics = (topic for topic, kind in self._graph.topics().items() if kind == TYPE)
             topic = next(topics, None)
             self._feed = None if topic is None else self._graph.feed(topic, TYPE)
 
     def update(self) -> None:
-        """Raises CockpitError."""
+        """Read new models in the background, and show those that have been read.
+
+        Raises:
+            CockpitError: A message is malformed.
+        """
         for message in self._feed.messages() if self._feed is not None else ():
             self._compare({model.name: model for model in message.models})
         while self._arrived:

@@ -23,7 +23,18 @@ LINK_STATES = "/gazebo/link_states"
 
 
 class WorldTracker:
-    """Finds worlds and robots, reads them in the background and draws them."""
+    """Finds worlds and robots, reads them in the background and draws them.
+
+    Args:
+        graph: Client of the ROS graph.
+        scene: The scene of viser.
+        reader: Reads worlds and robots in child processes.
+        notify: Shows a notification on the page.
+
+    Attributes:
+        view: The displayed world.
+        robots: Displayed robots by the name of their parameter.
+    """
 
     def __init__(self, graph: GraphClient, scene, reader: SceneReader, notify: Callable[[str], None]):
         self._graph, self._scene, self._reader, self._notify = graph, scene, reader, notify
@@ -35,7 +46,11 @@ class WorldTracker:
         self._spawned = SpawnedModelsView(graph, self.view, reader, notify)
 
     def poll(self) -> None:
-        """Start reading new worlds and robots. Raises CockpitError."""
+        """Start reading new worlds and robots.
+
+        Raises:
+            CockpitError: The ROS master does not answer.
+        """
         names = self._graph.parameter_names()
         worlds = [(WORLD, name, self._show_world) for name in WORLD_PARAMETERS if name in names]
         robots = [
@@ -48,6 +63,14 @@ class WorldTracker:
         self._spawned.poll()
 
     def update(self, frames: FrameTree, fixed: str, shows_world: bool, shows_robots: bool) -> None:
+        """Draw the world and the robots at their present poses.
+
+        Args:
+            frames: Tree of frames.
+            fixed: Fixed frame.
+            shows_world: Whether the world is displayed.
+            shows_robots: Whether the robots are displayed.
+        """
         while self._arrived:
             self._arrived.pop(0)()
         self.view.is_shown = shows_world
@@ -120,7 +143,15 @@ class WorldTracker:
 
 
 def world_in(frames: FrameTree, fixed: str) -> Optional[np.ndarray]:
-    """Return the pose (4, 4) of the world frame, else of the map frame, else the identity."""
+    """Return the pose of the world in the fixed frame.
+
+    Args:
+        frames: Tree of frames.
+        fixed: Fixed frame.
+
+    Returns:
+        Pose (4, 4) of the world frame; if it has no transform, of the map frame; else the identity.
+    """
     known = set(frames.names())
     for frame in (WORLD_FRAME, MAP_FRAME):
         if frame in known and frames.pose(frame, fixed) is not None:
