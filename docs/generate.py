@@ -16,7 +16,7 @@ from typing import Callable, Dict, Iterator, List, Tuple
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(path) for path in ROOT.glob("src/*/src")]
 
-from planar.config.listing import Section, render_yaml  # noqa: E402
+from planar.config.config_file import Section, render_yaml  # noqa: E402
 
 MADE_BY = "Made by docs/generate.py; do not edit."
 # A comment that names a module, on a separate line, and the listing behind it, once there is one.
@@ -120,7 +120,7 @@ PARTS: Dict[str, Callable[[], str]] = {"aliases": aliases, "faults": faults, "sc
 
 
 def declared_files() -> Dict[Path, Section]:
-    """Return the YAML files that packages declare in their ``config`` (see planar.config.listing)."""
+    """Return the YAML files that packages declare in their ``config`` (see planar.config.config_file)."""
     found = {}
     for package in sorted(path.parent for path in ROOT.glob("src/*/config")):
         if (package / "src" / package.name / "config.py").is_file():

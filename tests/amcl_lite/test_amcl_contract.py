@@ -226,14 +226,14 @@ class AmclContractTest(unittest.TestCase):
         diagnostics = Latest("/diagnostics", DiagnosticArray)
         quality = Latest("amcl/localization_quality", Float32)
 
-        def is_sure():
+        def confirms_pose():
             self.robot.move(TURN)
             self.map_to_odom(self.robot.sense() + POST_DATED)
             told = diagnostics.messages and quality.messages
             is_ok = told and diagnostics.messages[-1].status[0].level == DiagnosticStatus.OK
             return is_ok and quality.messages[-1].data > 0.9
 
-        wait_until("diagnostics and quality", is_sure)
+        wait_until("diagnostics and quality", confirms_pose)
         spread, fit = diagnostics.messages[-1].status
         self.assertEqual((spread.name, spread.hardware_id), ("amcl: Standard deviation", "None"))
         keys = [value.key for value in spread.values]

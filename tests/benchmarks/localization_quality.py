@@ -19,10 +19,10 @@ from scipy.stats import rankdata
 
 from amcl_lite.config import LocalizerSettings
 from amcl_lite.filter.particles import FreeSpace
-from amcl_lite.recovery.quality import quality_of
+from amcl_lite.recovery.quality import scan_quality
 from amcl_lite.sensor.beams import all_beams, evenly_spaced_beams
 from amcl_lite.sensor.likelihood_field import likelihood_field
-from amcl_lite.sensor.scan_matching import matched
+from amcl_lite.sensor.scan_matching import match_scan
 from planar import Pose2, Scan
 
 SETTINGS = LocalizerSettings(beams=60)
@@ -70,11 +70,11 @@ def _judged(place: Place, observations: List[Observation], rng) -> List[Tuple[fl
             poses = (
                 truth @ Pose2.from_array(rng.normal(0.0, (0.04, 0.04, 0.015))),
                 anywhere,
-                matched(anywhere, 0.1 * np.eye(3), ends_xy, field),
+                match_scan(anywhere, 0.1 * np.eye(3), ends_xy, field),
                 truth @ beside,
             )
             for pose in poses:
-                quality = quality_of(pose, beams, field, place.grid).probability
+                quality = scan_quality(pose, beams, field, place.grid).probability
                 rows.append((quality, pose.distance_to(truth) < RIGHT_WITHIN))
     return rows
 

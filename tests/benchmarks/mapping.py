@@ -27,9 +27,9 @@ from home_service.judging.verdict import ARRIVAL_TOLERANCE
 from move_base_lite import Decision, Navigator, Status, load_settings
 from pick_objects import load_mission
 from planar import OccupancyGrid, PlanarError, Pose2, Twist2, save_map
-from planar.config.settings_file import settings_from_yaml
+from planar.config.parameters import settings_from_yaml
 from planar.maps.map_score import MapScore
-from planar_ros.node.blas import use_one_blas_thread
+from planar_ros.node.entry import use_one_blas_thread
 from sim_bridge import RobotProfile, Simulation, load_world, robot_named
 from sim_bridge.world import World
 from slam_lite.config import NodeSettings

@@ -23,7 +23,7 @@ from amcl_lite.config import InitialPose
 from move_base_lite import Navigator, NavigatorSettings, Status, load_settings
 from move_base_lite.warmup import warm_up
 from planar import OccupancyGrid, Pose2, load_map, wrap
-from planar.config.settings_file import settings_from_yaml
+from planar.config.parameters import settings_from_yaml
 from sim_bridge import ROBOTS, Simulation, load_world
 from sim_bridge.world import World
 

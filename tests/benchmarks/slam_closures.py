@@ -25,7 +25,7 @@ from slam import relation_errors
 from slam_logs import DRIVES, relations_of, simulate
 
 from planar import wrap
-from planar_ros.node.blas import use_one_blas_thread
+from planar_ros.node.entry import use_one_blas_thread
 from slam_lite.config import NodeSettings
 from slam_lite.graph.pose_graph import chi_squares
 from slam_lite.mapper import Mapper

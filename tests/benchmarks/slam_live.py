@@ -29,9 +29,9 @@ from std_msgs.msg import Header
 from tf2_ros import StaticTransformBroadcaster
 
 from planar import Pose2
+from planar_ros.lockstep.ticker import PROGRESS_TOPIC as PROGRESS
 from planar_ros.messages.conversion import LaserScanArrays, OccupancyGridArrays, transform_msg
 from planar_ros.messages.transforms import Transforms
-from planar_ros.node.progress import TOPIC as PROGRESS
 from sim_bridge.views.true_map import true_map
 
 START = Pose2(1.0, 1.0, 0.0)

@@ -26,9 +26,9 @@ from home_service.headless import HeadlessMission
 from home_service.judging.map_truth import score_against_world
 from pick_objects import load_mission
 from planar import FREE, OCCUPIED, OccupancyGrid, Pose2, save_map
-from planar.config.settings_file import settings_from_yaml
+from planar.config.parameters import settings_from_yaml
 from planar.geometry.distance_field import distance_field
-from planar_ros.node.blas import use_one_blas_thread
+from planar_ros.node.entry import use_one_blas_thread
 from sim_bridge import load_world, robot_named
 from sim_bridge.simulation import box_on_floor
 from sim_bridge.views.true_map import true_map

@@ -135,7 +135,7 @@ def _move_base(path: Path) -> object:
 
 def _amcl(path: Path) -> object:
     from amcl_lite import LocalizerSettings
-    from planar.config.settings_file import settings_from_yaml
+    from planar.config.parameters import settings_from_yaml
 
     return settings_from_yaml(LocalizerSettings, path)
 
@@ -318,7 +318,7 @@ RESULT = json.dumps(
 
 
 def _bag(path: Path) -> object:
-    from planar_ros.bags.bag import BagReader
+    from planar_ros.bags.bag_reader import BagReader
 
     bag = BagReader(path)
     return [played for topic in bag.types for played in bag.messages([topic])]

@@ -20,8 +20,8 @@ from tf2_msgs.msg import TFMessage
 
 from planar import OccupancyGrid, Pose2, grid_from_picture
 from planar.geometry.ray_casting import cast_rays
+from planar_ros.lockstep.ticker import PROGRESS_TOPIC
 from planar_ros.messages.conversion import LaserScanArrays, grid_to_msg, pose2_to_msg, transform_msg
-from planar_ros.node.progress import TOPIC as PROGRESS_TOPIC
 
 ROOMS = """
 ################

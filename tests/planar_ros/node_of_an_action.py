@@ -4,7 +4,7 @@
 from move_base_msgs.msg import MoveBaseAction
 
 from planar_ros.calls.actions import ActionServer
-from planar_ros.node.shell import run
+from planar_ros.node.runner import run
 
 
 def start():

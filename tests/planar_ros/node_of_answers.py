@@ -6,7 +6,7 @@ import time
 import rospy
 from std_msgs.msg import Empty
 
-from planar_ros.node.shell import run
+from planar_ros.node.runner import run
 
 
 def start():

@@ -6,7 +6,7 @@ import threading
 
 import rospy
 
-from planar_ros.node.shell import run
+from planar_ros.node.runner import run
 
 
 def die():

@@ -5,7 +5,7 @@ import resource
 
 import rospy
 
-from planar_ros.node.shell import run
+from planar_ros.node.runner import run
 
 
 def start():

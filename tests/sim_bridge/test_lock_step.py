@@ -11,8 +11,8 @@ from rosgraph_msgs.msg import Log
 from std_msgs.msg import Float64
 from waiting import wait_until
 
+from planar_ros.lockstep.ticker import ProgressPublisher
 from planar_ros.messages.conversion import LaserScanArrays
-from planar_ros.node.progress import ProgressPublisher
 
 PERIOD = 0.1
 

@@ -13,7 +13,7 @@ from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 from waiting import wait_until
 
-from planar_ros.step import LockstepClient
+from planar_ros.lockstep import LockstepClient
 
 # Longer than the time limit of an answer [wall s].
 HELD_UP = 8.0
@@ -28,7 +28,7 @@ class TestSynchronisedNode(unittest.TestCase):
             frames.update(each.child_frame_id for each in message.transforms)
 
         rospy.Subscriber("/tf_static", TFMessage, keep, queue_size=10)
-        step.at_moments(lambda: ticks.append(frozenset(frames)))
+        step.on_instant(lambda: ticks.append(frozenset(frames)))
         step.join()
         wait_until("ticks", lambda: len(ticks) > 5, 30.0)
         self.assertIn("late", ticks[0])
@@ -46,7 +46,7 @@ class TestSynchronisedNode(unittest.TestCase):
                 time.sleep(HELD_UP)
                 is_held_up.set()
 
-        step.at_moments(hold_up)
+        step.on_instant(hold_up)
         wait_until("an end of it", is_held_up.is_set, 2.0 * HELD_UP)
         warning = "no progress of synchronised_node: the simulation goes on without it in real time"
         wait_until("its name in the log", lambda: ("/sim_bridge", warning) in logged)

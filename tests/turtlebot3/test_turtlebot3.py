@@ -21,7 +21,7 @@ from waiting import PATIENCE_SECONDS, wait_until
 from planar import Pose2
 from planar_ros.calls.actions import server_is_ready
 from planar_ros.messages.conversion import pose2_from_msg, pose2_to_msg
-from planar_ros.node.listeners import has_all_subscribers
+from planar_ros.node.topics import has_all_subscribers
 
 BRING_UP_SECONDS, EXIT_SECONDS = 90.0, 10.0
 START, GOAL = Pose2(-2.0, -0.5), Pose2(0.55, -1.8)

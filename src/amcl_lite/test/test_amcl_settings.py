@@ -3,7 +3,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from amcl_lite.config import InitialPose, LocalizerSettings, NodeSettings, advice
+from amcl_lite.config import InitialPose, LocalizerSettings, NodeSettings, settings_warnings
 from planar import SettingsError
 from planar.config.parameters import official_names, parameters_of
 from planar.config.settings import settings_from
@@ -73,10 +73,10 @@ def test_every_official_parameter_has_its_official_default():
 
 
 def test_settings_that_mislead_are_pointed_out():
-    assert advice(NodeSettings()) == []
-    assert "odometry" in advice(NodeSettings(beams=1))[0]
-    assert "likelihood_field_prob" in advice(NodeSettings(beam_skip=True))[0]
-    assert "both" in advice(NodeSettings(recovery_alpha_fast=0.0))[0]
+    assert settings_warnings(NodeSettings()) == []
+    assert "odometry" in settings_warnings(NodeSettings(beams=1))[0]
+    assert "likelihood_field_prob" in settings_warnings(NodeSettings(beam_skip=True))[0]
+    assert "both" in settings_warnings(NodeSettings(recovery_alpha_fast=0.0))[0]
 
 
 def test_strict_compatibility_brings_back_amcls_mistakes():

@@ -8,7 +8,7 @@ from amcl_lite import LocalizationError, Localizer, LocalizerSettings
 from amcl_lite.belief import Belief, load_particles, save_particles
 from amcl_lite.filter.particle_filter import ParticleFilter
 from amcl_lite.filter.particles import equally_weighted
-from amcl_lite.localizer import can_start_from
+from amcl_lite.localizer import is_valid_initial_pose
 from planar import OccupancyGrid, Pose2, Scan, grid_from_picture, wrap
 from planar.geometry.limits import MAX_COORDINATE
 from planar.geometry.ray_casting import cast_rays
@@ -145,7 +145,7 @@ def test_what_goes_on_after_a_crash_believes_what_was_believed(tmp_path):
     for step in way((0.9, 0.6)):
         toy.move(step)
     localizer = Localizer(toy.grid, replace(TURTLEBOT, beams=0), np.random.default_rng(1))
-    localizer.go_on(belief)
+    localizer.restore(belief)
     assert localizer.is_lost
     assert localizer.odom_in_map == belief.odom_in_map
     localizer.update(toy.base_in_odom, toy.scan())
@@ -164,7 +164,7 @@ def test_a_kept_belief_is_that_of_the_last_update():
     assert localizer.belief.base_in_odom == where
     assert localizer.belief.odom_in_map == odom_in_map
     assert localizer.belief.particles is localizer.particles
-    localizer.scatter()
+    localizer.start_global_localization()
     assert localizer.belief is None
 
 
@@ -197,7 +197,7 @@ def test_a_file_that_is_none_is_named(tmp_path):
 def test_a_scattered_filter_finds_the_robot():
     toy = Toy(Pose2(7.0, 0.8, 0.5))
     localizer = Localizer(toy.grid, LocalizerSettings(beams=60), np.random.default_rng(0))
-    localizer.scatter()
+    localizer.start_global_localization()
     localizer.update(toy.base_in_odom, toy.scan())
     assert tracking_errors(toy, localizer, CIRCLE * 120)[-1, 0] < 0.25
 
@@ -276,7 +276,7 @@ def test_what_was_told_since_the_last_estimate_outlasts_new_settings():
     localizer.set_pose(Pose2(2.0, 1.0), np.diag((0.01, 0.01, 0.01)))
     localizer.reconfigure(replace(TURTLEBOT, max_particles=1000))
     assert np.allclose(localizer.particles.poses.mean(axis=0), (2.0, 1.0, 0.0), atol=0.05)
-    localizer.scatter()
+    localizer.start_global_localization()
     localizer.reconfigure(TURTLEBOT)
     assert localizer.is_lost
     assert np.std(localizer.particles.poses[:, 0]) > 1.0
@@ -288,7 +288,7 @@ def test_odometry_that_jumps_beyond_all_measure_leaves_the_robot_within_reach():
     toy.base_in_odom = Pose2(-9e5, 9e5, 0.8)
     estimate = localizer.update(toy.base_in_odom, toy.scan())
     assert np.abs(localizer.particles.poses[:, :2]).max() <= MAX_COORDINATE
-    assert not can_start_from(estimate.base_in_map, estimate.covariance)
+    assert not is_valid_initial_pose(estimate.base_in_map, estimate.covariance)
     localizer.reconfigure(replace(TURTLEBOT, max_particles=1000))
     assert np.abs(localizer.particles.poses[:, :2]).max() <= MAX_COORDINATE
     localizer.set_pose(toy.base_in_map, np.diag((0.04, 0.04, 0.02)))
@@ -303,8 +303,8 @@ def test_wheels_that_err_by_a_tenth_are_followed(seed):
 
 def test_scans_that_contradict_each_other_leave_the_weights_a_distribution():
     particle_filter = ParticleFilter(equally_weighted(np.zeros((2, 3))), np.random.default_rng(0))
-    for logarithms in ((0.0, -1000.0), (-1000.0, 0.0)):  # no particle is likely by both
-        particle_filter.weigh(np.array(logarithms), TURTLEBOT)
+    for log_likelihoods in ((0.0, -1000.0), (-1000.0, 0.0)):  # no particle is likely by both
+        particle_filter.weigh(np.array(log_likelihoods), TURTLEBOT)
         assert particle_filter.particles.weights.tolist() == [1.0, 0.0]
 
 

@@ -11,7 +11,7 @@ from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, ru
 
 from amcl_lite import LocalizationError, Localizer, LocalizerSettings
 from amcl_lite.config import InitialPose
-from amcl_lite.localizer import can_start_from
+from amcl_lite.localizer import is_valid_initial_pose
 from planar import OccupancyGrid, Pose2, Scan, grid_from_picture
 from planar.geometry.limits import MAX_COORDINATE
 from planar.geometry.ray_casting import cast_rays
@@ -87,9 +87,9 @@ class LocalizerHistories(RuleBasedStateMachine):
         self.base_in_map, self.base_in_odom = START, Pose2(5.0, -3.0, 1.0)
         self.now, self.map, self.settings = 100.0, "room", USUAL
         self.kept, self.rng = InitialPose(), np.random.default_rng(0)
-        self.start_on("room")
+        self.set_map("room")
 
-    def start_on(self, name):
+    def set_map(self, name):
         """As SharedLocalizer does."""
         localizer = Localizer(MAPS[name], self.settings, self.rng)
         localizer.set_pose(self.kept.pose, self.kept.covariance)
@@ -102,7 +102,7 @@ class LocalizerHistories(RuleBasedStateMachine):
         estimate = self.localizer.update(self.base_in_odom, scan, laser)
         if estimate is not None:
             self.check(estimate)
-        if estimate is not None and can_start_from(estimate.base_in_map, estimate.covariance):
+        if estimate is not None and is_valid_initial_pose(estimate.base_in_map, estimate.covariance):
             variances = (float(estimate.covariance[i, i]) for i in range(3))
             pose = estimate.base_in_map
             self.kept = InitialPose(pose.x, pose.y, pose.yaw, *variances)
@@ -180,14 +180,14 @@ class LocalizerHistories(RuleBasedStateMachine):
 
     @rule()
     def somebody_asks_for_global_localization(self):
-        self.localizer.scatter()
+        self.localizer.start_global_localization()
         assert self.localizer.is_lost
 
     @rule(name=st.sampled_from(sorted(MAPS)))
     def another_map_comes(self, name):
         before = self.localizer
         try:
-            self.start_on(name)
+            self.set_map(name)
         except LocalizationError:
             assert name in NOWHERE_FREE
             assert self.localizer is before
@@ -202,14 +202,14 @@ class LocalizerHistories(RuleBasedStateMachine):
     @rule()
     def the_node_dies_and_comes_back(self):
         self.rng = np.random.default_rng(0)
-        self.start_on(self.map)
+        self.set_map(self.map)
 
     @rule()
     def it_comes_back_with_what_it_believed(self):
         belief = self.localizer.belief
         self.the_node_dies_and_comes_back()
         if belief is not None:
-            self.localizer.go_on(belief)
+            self.localizer.restore(belief)
 
     @rule(seconds=st.sampled_from((5.0, 1e6, -5.0, -1e6)))
     def the_clock_jumps(self, seconds):
@@ -238,7 +238,7 @@ class LocalizerHistories(RuleBasedStateMachine):
         if not hasattr(self, "localizer"):
             return
         if self.map != "room":
-            self.start_on("room")
+            self.set_map("room")
         self.settings = replace(USUAL, max_particles=500)
         self.localizer.reconfigure(self.settings)
         self.odometry_jumps(Pose2(2.0, 2.0, 1.0))

@@ -12,7 +12,7 @@ from amcl_lite.filter.particles import (
     equally_weighted,
     gaussian_particles,
 )
-from amcl_lite.filter.resampling import particles_needed, resampled
+from amcl_lite.filter.resampling import particles_needed, resample
 from amcl_lite.filter.statistics import best_cluster, has_converged, mean_and_covariance
 from planar import Pose2, grid_from_picture
 
@@ -51,14 +51,14 @@ def test_a_narrow_set_shrinks_and_a_wide_one_does_not():
     settings = LocalizerSettings(min_particles=100, max_particles=2000, kld_error=0.05)
     narrow = gaussian_particles(Pose2(0.25, 0.25, 0.0), 0.04 * np.eye(3), 2000, rng())
     wide = gaussian_particles(Pose2(), 25.0 * np.eye(3), 2000, rng())
-    assert resampled(narrow, settings, 0.0, SPACE.draw, rng()).size < 800
-    assert resampled(wide, settings, 0.0, SPACE.draw, rng()).size == 2000
+    assert resample(narrow, settings, 0.0, SPACE.draw, rng()).size < 800
+    assert resample(wide, settings, 0.0, SPACE.draw, rng()).size == 2000
 
 
 def test_particles_are_drawn_in_proportion_to_their_weights():
     poses = np.array([[0.0, 0, 0], [5.0, 0, 0], [10.0, 0, 0]])
     settings = LocalizerSettings(min_particles=20_000, max_particles=20_000)
-    drawn = resampled(ParticleSet(poses, np.array([0.2, 0.0, 0.8])), settings, 0.0, SPACE.draw, rng())
+    drawn = resample(ParticleSet(poses, np.array([0.2, 0.0, 0.8])), settings, 0.0, SPACE.draw, rng())
     share = np.mean(drawn.poses[:, 0] == 0.0)
     assert share == pytest.approx(0.2, abs=4 * math.sqrt(0.2 * 0.8 / 20_000))
     assert not np.any(drawn.poses[:, 0] == 5.0)
@@ -68,7 +68,7 @@ def test_particles_are_drawn_in_proportion_to_their_weights():
 def test_injected_particles_lie_in_free_space():
     particles = equally_weighted(np.zeros((1000, 3)))
     settings = LocalizerSettings(min_particles=1000, max_particles=1000)
-    drawn = resampled(particles, settings, 0.3, SPACE.draw, rng())
+    drawn = resample(particles, settings, 0.3, SPACE.draw, rng())
     injected = drawn.poses[drawn.poses[:, 0] > 5.0]
     assert len(injected) / 1000 == pytest.approx(0.3, abs=4 * math.sqrt(0.3 * 0.7 / 1000))
     assert all(ROOM.value_at(x, y) == 0 for x, y, _ in injected)

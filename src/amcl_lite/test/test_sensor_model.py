@@ -38,7 +38,7 @@ def p_hit(distance):
 def test_the_field_is_one_on_a_wall_and_falls_off_with_distance():
     fit = field().fit
     assert fit[2, 7] == 1.0 and fit[2, 6] == pytest.approx(math.exp(-2.0))
-    assert field().fit_at_distance(0.5) == pytest.approx(math.exp(-0.5))
+    assert field().value_at_distance(0.5) == pytest.approx(math.exp(-0.5))
 
 
 def test_likelihood_field_weighs_by_one_and_the_sum_of_cubes():

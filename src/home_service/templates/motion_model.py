@@ -18,7 +18,7 @@ class CLASS:
     def moved(
         self, poses: np.ndarray, base_before: Pose2, base_now: Pose2, rng: np.random.Generator
     ) -> np.ndarray:
-        """See amcl_lite.motion.own_model.MotionModel: particles (N, 3) after the motion."""
+        """See amcl_lite.motion.custom_model.MotionModel: particles (N, 3) after the motion."""
         step = base_before.inverse() @ base_now
         distance, turn = np.hypot(step.x, step.y), abs(step.yaw)
         translation, rotation = distance * np.array(PER_METRE) + turn * np.array(PER_RADIAN)

@@ -20,7 +20,7 @@ class CLASS:
         self._logarithms = -0.5 * (apart / SIGMA) ** 2
 
     def log_likelihoods(self, poses: np.ndarray, beams: Beams) -> np.ndarray:
-        """See amcl_lite.sensor.own_model.SensorModel: (N,) for poses (N, 3)."""
+        """See amcl_lite.sensor.custom_model.SensorModel: (N,) for poses (N, 3)."""
         ends = beams.ends_xy
         cos, sin = np.cos(poses[:, 2:]), np.sin(poses[:, 2:])
         x = poses[:, :1] + cos * ends[:, 0] - sin * ends[:, 1]

@@ -7,7 +7,7 @@ from robot_in_picture import PRESET, Robot, drive_to_end, two_rooms
 from move_base_lite import Navigator, Status, settings_from_parameters
 from move_base_lite.check import KITS
 from planar import Pose2, SettingsError
-from planar.contract_check import run_checks
+from planar.plugin_check import run_checks
 
 GRID = two_rooms(door=0.9)
 

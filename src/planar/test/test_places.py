@@ -53,14 +53,14 @@ def test_places_that_no_robot_can_reach_are_told_from_free_ones(x, reason):
 
 def test_a_robot_within_the_radius_is_there():
     place = NamedPlace("a", Pose2(1.0, 1.0), 0.5)
-    assert place.holds(Pose2(1.3, 1.3, 2.0))
-    assert not place.holds(Pose2(1.4, 1.4, 0.0))
+    assert place.contains(Pose2(1.3, 1.3, 2.0))
+    assert not place.contains(Pose2(1.4, 1.4, 0.0))
 
 
 def test_each_pose_of_a_place_serves():
     place = NamedPlace("a", Pose2(1.0, 1.0), 0.5, (Pose2(3.0, 1.0),))
-    assert place.holds(Pose2(3.2, 1.0))
-    assert not place.holds(Pose2(2.0, 1.0))
+    assert place.contains(Pose2(3.2, 1.0))
+    assert not place.contains(Pose2(2.0, 1.0))
 
 
 def test_an_approach_in_an_obstacle_is_found():

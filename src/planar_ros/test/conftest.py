@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from planar_ros.step.transport import LockstepConnection
+from planar_ros.lockstep.transport import LockstepConnection
 
 
 @pytest.fixture

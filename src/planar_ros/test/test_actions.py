@@ -16,7 +16,7 @@ from planar_ros.calls.actions import (
     server_connection,
     server_is_ready,
 )
-from planar_ros.step import LockstepClient
+from planar_ros.lockstep import LockstepClient
 
 
 def test_goals_that_have_ended_are_forgotten_but_for_the_last():
@@ -104,7 +104,7 @@ def test_a_goal_is_lost_when_its_server_was_started_anew_before_it_was_acknowled
 
 @pytest.fixture
 def server(monkeypatch):
-    """A server of an action without a master; ``afresh`` is called when time has jumped back."""
+    """A server of an action without a master; ``on_time_jump`` is called when time has jumped back."""
     nobody = SimpleNamespace(publish=lambda message: None, shutdown=lambda: None)
     for name in ("Publisher", "Subscriber", "Timer"):
         monkeypatch.setattr(rospy, name, lambda *_, **__: nobody)
@@ -115,11 +115,13 @@ def server(monkeypatch):
     monkeypatch.setattr(rospy, "on_shutdown", lambda hook: None)
     monkeypatch.setattr(rospy.rostime, "_rostime_initialized", True)
     hooks = []
-    step = SimpleNamespace(is_on=False, every=lambda *given: hooks.append(given), soon=lambda do: do())
+    step = SimpleNamespace(
+        is_synchronized=False, every=lambda *given: hooks.append(given), defer=lambda do: do()
+    )
     monkeypatch.setattr(LockstepClient, "of_node", lambda: step)
     server = ActionServer("action", MoveBaseAction, auto_start=False)
     server.start()
-    server.afresh = hooks[0][2]
+    server.on_time_jump = hooks[0][2]
     yield server
     rospy.rostime.switch_to_wallclock()
 
@@ -137,6 +139,6 @@ def test_after_time_was_set_back_goals_are_taken_whatever_the_last_one_was_stamp
         server.set_succeeded()
     server.action_server.internal_cancel_callback(GoalID(stamp=rospy.Time(80), id="another"))
     goal = goal_at(1)
-    server.afresh()
+    server.on_time_jump()
     server.action_server.internal_goal_callback(goal)
     assert server.is_new_goal_available()

@@ -1,8 +1,8 @@
 import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from planar_ros.bags.replaying import run_replay
-from planar_ros.node.blas import use_one_blas_thread
+from planar_ros.bags.offline_replay import run_replay
+from planar_ros.node.entry import use_one_blas_thread
 
 
 def threads():

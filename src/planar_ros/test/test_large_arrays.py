@@ -5,12 +5,12 @@ import sys
 
 FRAGMENTED = """
 import numpy as np
-from planar_ros.bags.replaying import give_back_large_arrays
+from planar_ros.bags.offline_replay import unmap_large_arrays
 
 def resident():
     return int(open("/proc/self/statm").read().split()[1]) * 4096
 
-give_back_large_arrays()
+unmap_large_arrays()
 before, kept = resident(), []
 for _ in range(20):
     large = [np.ones(3 * 2**20 // 8) for _ in range(5)]

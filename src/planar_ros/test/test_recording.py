@@ -4,7 +4,7 @@ import rospy
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import LaserScan
 
-from planar_ros.bags.bag import LASER_SCAN, BagError
+from planar_ros.bags.bag_reader import LASER_SCAN, BagError
 from planar_ros.bags.recording import Recording, bag_paths
 
 
@@ -26,7 +26,7 @@ def test_the_parts_of_a_recording_are_played_in_the_order_of_time(tmp_path):
     assert len(stamps) == 20
     assert (recording.start, recording.end) == (1.0, 11.4)
     assert recording.topics_of(LASER_SCAN) == ["/scan"]
-    assert recording.gaps == []
+    assert recording.truncations == []
 
 
 def test_a_recording_that_was_cut_off_is_played_as_far_as_it_goes_and_left_as_it_is(tmp_path):
@@ -35,9 +35,9 @@ def test_a_recording_that_was_cut_off_is_played_as_far_as_it_goes_and_left_as_it
     before = path.read_bytes()
     recording = Recording([tmp_path])
     played = list(recording.messages({"/scan"}))
-    print(f"{len(played)} of 200 scans, {recording.gaps}")
+    print(f"{len(played)} of 200 scans, {recording.truncations}")
     assert 50 < len(played) < 150
-    assert recording.gaps[0].startswith("cut.bag.active: cut off ")
+    assert recording.truncations[0].startswith("cut.bag.active: cut off ")
     assert path.read_bytes() == before
 
 

@@ -6,7 +6,7 @@ import time
 import pytest
 import rospy
 
-from planar_ros.step.ticker import Ticker
+from planar_ros.lockstep.ticker import Ticker
 
 PERIOD = 0.1
 
@@ -28,7 +28,7 @@ class Node:
     """Works by a ticker; ``in_first_tick`` is called then."""
 
     def __init__(self, monkeypatch, in_first_tick=lambda: None, is_in_step=lambda: False):
-        self.ticks, self.afresh = [], 0
+        self.ticks, self.on_time_jump = [], 0
         self._in_first_tick, self._has_ended = in_first_tick, threading.Event()
         monkeypatch.setattr(rospy, "is_shutdown", self._has_ended.is_set)
         self.ticker = Ticker(lambda: PERIOD, self._tick, self._begin)
@@ -42,7 +42,7 @@ class Node:
             self._in_first_tick()
 
     def _begin(self):
-        self.afresh += 1
+        self.on_time_jump += 1
 
     def end(self):
         self._has_ended.set()
@@ -60,10 +60,10 @@ def wait_until(is_so):
 def test_a_jump_back_of_time_in_the_middle_of_a_tick_is_noticed(clock, monkeypatch):
     node = Node(monkeypatch, in_first_tick=lambda: clock(80.0))
     clock(100.0)
-    wait_until(lambda: node.afresh == 1 and node.ticks == [100.0, 80.0])
+    wait_until(lambda: node.on_time_jump == 1 and node.ticks == [100.0, 80.0])
     clock(80.0 + 1.5 * PERIOD)
     wait_until(lambda: len(node.ticks) == 3)
-    assert node.afresh == 1
+    assert node.on_time_jump == 1
     node.end()
 
 
@@ -74,10 +74,10 @@ def test_in_step_a_jump_back_is_the_business_of_the_moment_alone(clock, monkeypa
     wait_until(lambda: node.ticks == [100.0])
     is_in_step.set()
     clock(80.0)
-    node.ticker.look()
-    assert (node.ticks, node.afresh) == ([100.0, 80.0], 1)
+    node.ticker.poll()
+    assert (node.ticks, node.on_time_jump) == ([100.0, 80.0], 1)
     time.sleep(0.3)
-    assert (node.ticks, node.afresh) == ([100.0, 80.0], 1)
+    assert (node.ticks, node.on_time_jump) == ([100.0, 80.0], 1)
     node.end()
 
 
@@ -87,5 +87,5 @@ def test_a_shorter_period_holds_at_once_and_is_no_jump_of_time(clock):
     for seconds, period in ((1.0, 0.5), (1.0625, 0.125), (1.25, 0.125)):
         clock(seconds)
         periods[0] = period
-        ticker.look()
+        ticker.poll()
     assert (ticks, jumps) == ([1.0, 1.25], [])

@@ -19,12 +19,12 @@ def buffer():
 
 
 @pytest.fixture
-def intake(buffer):
+def transform_filter(buffer):
     return TransformFilter(buffer)
 
 
-def tell(intake, parent, child, second, x=0.0, by="simulator"):
-    intake.take([transform_msg(Pose2(x, 0.0, 0.0), parent, child, rospy.Time.from_sec(second))], by)
+def add(transform_filter, parent, child, second, x=0.0, by="simulator"):
+    transform_filter.add([transform_msg(Pose2(x, 0.0, 0.0), parent, child, rospy.Time.from_sec(second))], by)
 
 
 def x_at(buffer, parent, child, second):
@@ -32,32 +32,32 @@ def x_at(buffer, parent, child, second):
     return buffer.lookup_transform(parent, child, stamp).transform.translation.x
 
 
-def test_a_word_from_before_a_jump_that_comes_after_it_is_forgotten(intake, buffer):
-    tell(intake, "odom", "base_link", 14.0, x=7.0)
+def test_a_word_from_before_a_jump_that_comes_after_it_is_forgotten(transform_filter, buffer):
+    add(transform_filter, "odom", "base_link", 14.0, x=7.0)
     buffer.clear()  # somebody else saw the jump before tf did
-    tell(intake, "odom", "base_link", 14.1, x=7.0)
+    add(transform_filter, "odom", "base_link", 14.1, x=7.0)
     for second in (0.1, 0.2, 0.3):
-        tell(intake, "odom", "base_link", second, x=second)
+        add(transform_filter, "odom", "base_link", second, x=second)
     assert x_at(buffer, "odom", "base_link", 0.2) == pytest.approx(0.2)
     latest = buffer.get_latest_common_time("odom", "base_link")
     assert latest.to_sec() == pytest.approx(0.3)
 
 
-def test_all_publishers_jump_each_in_its_own_time(intake, buffer):
+def test_all_publishers_jump_each_in_its_own_time(transform_filter, buffer):
     for second in (14.0, 0.1):
-        tell(intake, "odom", "base_link", second, x=second)
-    tell(intake, "map", "odom", 14.2, by="amcl")
+        add(transform_filter, "odom", "base_link", second, x=second)
+    add(transform_filter, "map", "odom", 14.2, by="amcl")
     for second in (0.2, 0.3):
-        tell(intake, "map", "odom", second, by="amcl")
-        tell(intake, "odom", "base_link", second, x=second)
+        add(transform_filter, "map", "odom", second, by="amcl")
+        add(transform_filter, "odom", "base_link", second, x=second)
     assert x_at(buffer, "map", "base_link", 0.3) == pytest.approx(0.3)
     assert buffer.get_latest_common_time("map", "base_link").to_sec() == pytest.approx(0.3)
 
 
-def test_one_who_is_behind_another_has_not_jumped(intake, buffer):
-    tell(intake, "map", "odom", 14.0, by="amcl")
-    tell(intake, "odom", "base_link", 12.0)
-    tell(intake, "map", "odom", 13.5, by="amcl")
+def test_one_who_is_behind_another_has_not_jumped(transform_filter, buffer):
+    add(transform_filter, "map", "odom", 14.0, by="amcl")
+    add(transform_filter, "odom", "base_link", 12.0)
+    add(transform_filter, "map", "odom", 13.5, by="amcl")
     assert buffer.get_latest_common_time("map", "base_link").to_sec() == pytest.approx(12.0)
 
 
@@ -67,17 +67,17 @@ def test_one_who_is_behind_another_has_not_jumped(intake, buffer):
     [SimpleNamespace(secs=-1, nsecs=0), rospy.Time(2**31, 5), rospy.Time(2**32 - 1, 999_999_999)],
     ids=str,
 )
-def test_stamps_that_mean_nothing_are_left_out(intake, buffer, stamp, is_static):
+def test_stamps_that_mean_nothing_are_left_out(transform_filter, buffer, stamp, is_static):
     """tf2 ends the interpreter for differences of time that it cannot hold."""
-    tell(intake, "odom", "base_link", 1.0)
+    add(transform_filter, "odom", "base_link", 1.0)
     bad = transform_msg(Pose2(), "odom", "base_link", stamp)
-    intake.take([bad], "simulator", is_static)
+    transform_filter.add([bad], "simulator", is_static)
     assert buffer.get_latest_common_time("odom", "base_link").to_sec() == pytest.approx(1.0)
 
 
-def test_what_never_moves_outlives_a_jump(intake, buffer):
+def test_what_never_moves_outlives_a_jump(transform_filter, buffer):
     static = transform_msg(Pose2(0.1, 0.0, 0.0), "base_link", "laser", rospy.Time.from_sec(14.0))
-    intake.take([static], "simulator", is_static=True)
+    transform_filter.add([static], "simulator", is_static=True)
     for second in (14.0, 0.1, 0.2):
-        tell(intake, "odom", "base_link", second)
+        add(transform_filter, "odom", "base_link", second)
     assert x_at(buffer, "odom", "laser", 0.2) == pytest.approx(0.1)

@@ -18,10 +18,10 @@ MISSING = "the observer /referee"
 class AllConnected:
     """Every node is there and connected."""
 
-    def known(self):
+    def known_nodes(self):
         return {"/amcl"}, {"/amcl"}
 
-    def gaps(self, members, observers, static_publishers):
+    def missing(self, members, observers, static_publishers):
         return []
 
 

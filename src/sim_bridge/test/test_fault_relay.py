@@ -14,8 +14,8 @@ from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Header
 
 from planar import PlanarError, Pose2, SettingsError, Twist2
-from planar_ros.messages.border import MessageError
 from planar_ros.messages.conversion import LaserScanArrays, yaw_of
+from planar_ros.messages.validation import MessageError
 from sim_bridge.faults import KINDS, Fault, load_faults
 from sim_bridge.faults.injection import apply_faults
 from sim_bridge.faults.kind import FaultKind

@@ -129,7 +129,7 @@ def test_a_map_in_bands_is_the_map(keyframes, older, most_cells):
         whole, banded = renderer.grid(), render_in_bands(evidence, 0.05, 0.25, most_cells)
         bands = list(banded.bands)
         assert all(band.size <= max(most_cells, 64 * banded.cols) for band in bands)
-        joined = replace(banded, bands=bands).joined()
+        joined = replace(banded, bands=bands).assemble()
         assert np.array_equal(joined.cells, whole.cells)
         assert (joined.origin, joined.resolution) == (whole.origin, whole.resolution)
 

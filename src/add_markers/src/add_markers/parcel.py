@@ -4,7 +4,7 @@ import enum
 from typing import Optional
 
 from planar import Pose2
-from planar.elapsed import ElapsedTime
+from planar.elapsed_time import ElapsedTime
 from planar.maps.places import NamedPlace
 
 
@@ -54,16 +54,16 @@ class CarriedParcel:
             Pose where the object is shown; None while it is hidden.
         """
         if robot is not None:
-            self._follow(self._elapsed.at(now), robot)
+            self._follow(self._elapsed.update(now), robot)
         return {ParcelStage.WAITING: self._pickup.pose, ParcelStage.DELIVERED: self._dropoff.pose}.get(
             self.stage
         )
 
     def _follow(self, now: float, robot: Pose2) -> None:
-        if self.stage is ParcelStage.CARRIED and self._dropoff.holds(robot):
+        if self.stage is ParcelStage.CARRIED and self._dropoff.contains(robot):
             self.stage = ParcelStage.DELIVERED
         elif self.stage is ParcelStage.WAITING:
-            if not self._pickup.holds(robot):
+            if not self._pickup.contains(robot):
                 self._arrived_at = None
             elif self._arrived_at is None:
                 self._arrived_at = now
@@ -83,7 +83,7 @@ class TimedParcel:
 
     def update(self, now: float, robot: Optional[Pose2] = None) -> Optional[Pose2]:
         """Return the pose where the object is shown, None while it is hidden. The first call starts it."""
-        elapsed = self._elapsed.at(now)
+        elapsed = self._elapsed.update(now)
         if elapsed < self._hide_after:
             return self._pickup.pose
         return None if elapsed < self._show_after else self._dropoff.pose

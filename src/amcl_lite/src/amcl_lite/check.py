@@ -8,51 +8,54 @@ import sys
 import numpy as np
 
 from amcl_lite.config import LocalizerSettings
-from amcl_lite.motion.own_model import CONTRACT as MOTION
-from amcl_lite.motion.own_model import motion_model_of
+from amcl_lite.motion.custom_model import CONTRACT as MOTION
+from amcl_lite.motion.custom_model import motion_model_of
 from amcl_lite.sensor.beams import Beams, evenly_spaced_beams
-from amcl_lite.sensor.own_model import CONTRACT as SENSOR
+from amcl_lite.sensor.custom_model import CONTRACT as SENSOR
 from amcl_lite.sensor.scan_likelihood import ScanLikelihood
 from planar import OccupancyGrid, Pose2, Scan, grid_from_picture, wrap
-from planar.contract_check import CheckSuite, expect, plugin_finder, run_checks
 from planar.geometry.ray_casting import cast_rays
+from planar.plugin_check import CheckSuite, expect, plugin_finder, run_checks
 
 ROOM = grid_from_picture("##########\n#........#\n#........#\n#....#...#\n#....#####\n##########", 0.5)
 GRID = OccupancyGrid(np.kron(ROOM.cells, np.ones((10, 10), np.int8)), 0.05)
-HERE = Pose2(1.2, 1.6, 0.4)
+TRUE_POSE = Pose2(1.2, 1.6, 0.4)
 ANGLES, RANGE_MAX = np.linspace(-np.pi, np.pi, 90, endpoint=False), 10.0
 # Odometry's way, and how far particles may be off it on average, m and rad.
-WAY, OFF, TURNED = Pose2(0.5, 0.1, 0.4), 0.1, 0.1
+MOTION_STEP, MAX_POSITION_BIAS, MAX_HEADING_BIAS = Pose2(0.5, 0.1, 0.4), 0.1, 0.1
 
 
-def says_how_likely(settings: LocalizerSettings) -> None:
+def gives_finite_log_likelihoods(settings: LocalizerSettings) -> None:
     """It says how likely a scan is at each pose, in the map or out of it, whatever the scan shows."""
-    poses = np.array([HERE.as_array(), [0.0, 0.0, 0.0], [-50.0, 900.0, 1.0]])
+    poses = np.array([TRUE_POSE.as_array(), [0.0, 0.0, 0.0], [-50.0, 900.0, 1.0]])
     for ranges in (_ranges(), np.full(len(ANGLES), np.inf), np.full(len(ANGLES), np.nan)):
-        _told(settings, poses, _beams(ranges, settings))
+        _log_likelihoods(settings, poses, _beams(ranges, settings))
 
 
-def knows_where_it_is(settings: LocalizerSettings) -> None:
+def prefers_true_pose(settings: LocalizerSettings) -> None:
     """A scan is likelier where it was made than 0.5 m or half a radian beside."""
     beside = [Pose2(x, y, yaw) for x, y, yaw in np.vstack([np.eye(3), -np.eye(3)]) * 0.5]
-    poses = np.array([HERE.as_array(), *((HERE @ step).as_array() for step in beside)])
-    told = _told(settings, poses, _beams(_ranges(), settings))
-    for step, likelihood in zip(beside, told[1:]):
-        expect(told[0] > likelihood, f"{likelihood:.3g} at {step} from there, where it is {told[0]:.3g}")
+    poses = np.array([TRUE_POSE.as_array(), *((TRUE_POSE @ step).as_array() for step in beside)])
+    log_likelihoods = _log_likelihoods(settings, poses, _beams(_ranges(), settings))
+    for step, likelihood in zip(beside, log_likelihoods[1:]):
+        expect(
+            log_likelihoods[0] > likelihood,
+            f"{likelihood:.3g} at an offset of {step}, {log_likelihoods[0]:.3g} at the true pose",
+        )
 
 
-def answers_alike(settings: LocalizerSettings) -> None:
+def is_deterministic(settings: LocalizerSettings) -> None:
     """The same calls give the same answers."""
     beams = _beams(_ranges(), settings)
-    first, second = (_told(settings, _crowd(), beams) for _ in range(2))
+    first, second = (_log_likelihoods(settings, _poses_nearby(), beams) for _ in range(2))
     expect(np.array_equal(first, second), "another likelihood of the same scan")
 
 
-def changes_nothing(settings: LocalizerSettings) -> None:
+def leaves_inputs_unchanged(settings: LocalizerSettings) -> None:
     """What it is given stays as it was."""
     beams, cells = _beams(_ranges(), settings), GRID.cells.copy()
     before = beams.ranges.copy(), beams.directions.copy(), beams.ends_xy.copy()
-    _told(settings, _crowd(), beams)
+    _log_likelihoods(settings, _poses_nearby(), beams)
     for array, as_it_was in zip((beams.ranges, beams.directions, beams.ends_xy), before):
         expect(np.array_equal(array, as_it_was), "the beams are others after the call")
     expect(np.array_equal(GRID.cells, cells), "the map is another after the call")
@@ -64,25 +67,29 @@ def follows_odometry(settings: LocalizerSettings) -> None:
     for yaw in (0.0, 1.5, -3.0):
         start = Pose2(1.0, 2.0, yaw)
         poses = np.tile(start.as_array(), (2000, 1))
-        now = motion_model_of(settings).moved(poses, before, before @ WAY, np.random.default_rng(0))
-        meant = start @ WAY
+        now = motion_model_of(settings).moved(poses, before, before @ MOTION_STEP, np.random.default_rng(0))
+        meant = start @ MOTION_STEP
         off = np.hypot(*(now[:, :2].mean(axis=0) - (meant.x, meant.y)))
-        expect(off <= OFF, f"{off:.2f} m off after {np.hypot(WAY.x, WAY.y):.2f} m")
+        expect(
+            off <= MAX_POSITION_BIAS, f"{off:.2f} m off after {np.hypot(MOTION_STEP.x, MOTION_STEP.y):.2f} m"
+        )
         turned = abs(np.mean([wrap(each - meant.yaw) for each in now[:, 2].tolist()]))
-        expect(turned <= TURNED, f"{turned:.2f} rad off after a turn of {WAY.yaw:g} rad")
+        expect(turned <= MAX_HEADING_BIAS, f"{turned:.2f} rad off after a turn of {MOTION_STEP.yaw:g} rad")
 
 
-def draws_alike(settings: LocalizerSettings) -> None:
+def uses_only_given_rng(settings: LocalizerSettings) -> None:
     """All chance comes from rng: the same seeds give the same answers."""
     first, second = (
-        motion_model_of(settings).moved(_crowd(), HERE, HERE @ WAY, np.random.default_rng(3))
+        motion_model_of(settings).moved(
+            _poses_nearby(), TRUE_POSE, TRUE_POSE @ MOTION_STEP, np.random.default_rng(3)
+        )
         for _ in range(2)
     )
     expect(np.array_equal(first, second), "other poses with the same seed")
 
 
 def _ranges() -> np.ndarray:
-    return cast_rays(GRID, HERE, ANGLES, RANGE_MAX)
+    return cast_rays(GRID, TRUE_POSE, ANGLES, RANGE_MAX)
 
 
 def _beams(ranges: np.ndarray, settings: LocalizerSettings) -> Beams:
@@ -90,16 +97,16 @@ def _beams(ranges: np.ndarray, settings: LocalizerSettings) -> Beams:
     return evenly_spaced_beams(scan, settings)
 
 
-def _crowd() -> np.ndarray:
-    return HERE.as_array() + np.random.default_rng(1).normal(0.0, 0.2, (50, 3))
+def _poses_nearby() -> np.ndarray:
+    return TRUE_POSE.as_array() + np.random.default_rng(1).normal(0.0, 0.2, (50, 3))
 
 
-def _told(settings: LocalizerSettings, poses: np.ndarray, beams: Beams) -> np.ndarray:
-    return ScanLikelihood(GRID, settings).logarithms(poses, beams, has_converged=False)
+def _log_likelihoods(settings: LocalizerSettings, poses: np.ndarray, beams: Beams) -> np.ndarray:
+    return ScanLikelihood(GRID, settings).log_likelihoods(poses, beams, has_converged=False)
 
 
-SENSOR_CHECKS = (says_how_likely, knows_where_it_is, answers_alike, changes_nothing)
-MOTION_CHECKS = (follows_odometry, draws_alike)
+SENSOR_CHECKS = (gives_finite_log_likelihoods, prefers_true_pose, is_deterministic, leaves_inputs_unchanged)
+MOTION_CHECKS = (follows_odometry, uses_only_given_rng)
 KITS = {
     "sensor_model": CheckSuite(
         plugin_finder(SENSOR, lambda name: LocalizerSettings(sensor_plugin=name)), SENSOR_CHECKS

@@ -11,7 +11,7 @@ from typing import Any, Dict, List
 import numpy as np
 
 from planar import Pose2
-from planar.config.listing import Section
+from planar.config.config_file import Section
 from planar.config.parameters import Interval, check_parameters, parameter
 from planar.config.settings import check
 from planar.plugins import check_plugin_name
@@ -19,7 +19,7 @@ from planar.plugins import check_plugin_name
 MOTION_MODELS = ("diff", "omni", "diff-corrected", "omni-corrected")
 SENSOR_MODELS = ("likelihood_field", "likelihood_field_prob", "beam")
 RESAMPLE_METHODS = ("systematic", "multinomial")
-AS_AMCL: Dict[str, Any] = {
+STRICT_COMPAT_SETTINGS: Dict[str, Any] = {
     "resample_method": "multinomial",
     "refine_pose": False,
     "recover_when_lost": False,
@@ -29,8 +29,8 @@ AS_AMCL: Dict[str, Any] = {
 
 def _check_plugins(settings: "LocalizerSettings") -> None:
     # Late: the contracts are made of these settings.
-    from amcl_lite.motion.own_model import CONTRACT as MOTION
-    from amcl_lite.sensor.own_model import CONTRACT as SENSOR
+    from amcl_lite.motion.custom_model import CONTRACT as MOTION
+    from amcl_lite.sensor.custom_model import CONTRACT as SENSOR
 
     if settings.motion_plugin:
         check_plugin_name("motion_plugin", settings.motion_plugin, MOTION)
@@ -226,7 +226,7 @@ class LocalizerSettings:
     def __post_init__(self):
         check_parameters(self)
         if self.strict_compat:
-            for name, value in AS_AMCL.items():
+            for name, value in STRICT_COMPAT_SETTINGS.items():
                 object.__setattr__(self, name, value)
         _check_plugins(self)
         check(
@@ -328,7 +328,7 @@ CONFIG_FILES = {
 }
 
 
-def advice(settings: LocalizerSettings) -> List[str]:
+def settings_warnings(settings: LocalizerSettings) -> List[str]:
     """What a user may not expect of these settings, in sentences."""
     lines = []
     if settings.beams < 2:

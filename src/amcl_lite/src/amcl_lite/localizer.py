@@ -19,13 +19,13 @@ from amcl_lite.filter.particles import (
 )
 from amcl_lite.filter.resampling import DrawPoses
 from amcl_lite.filter.statistics import best_cluster, mean_and_covariance
-from amcl_lite.motion.own_model import motion_model_of
+from amcl_lite.motion.custom_model import motion_model_of
 from amcl_lite.motion.update_policy import UpdatePolicy
 from amcl_lite.recovery.hypotheses import find_hypotheses
-from amcl_lite.recovery.quality import LostDetector, Quality, quality_of
+from amcl_lite.recovery.quality import LostDetector, ScanQuality, scan_quality
 from amcl_lite.sensor.beams import Beams, all_beams, evenly_spaced_beams
 from amcl_lite.sensor.scan_likelihood import ScanLikelihood
-from amcl_lite.sensor.scan_matching import matched
+from amcl_lite.sensor.scan_matching import match_scan
 from planar import OccupancyGrid, Pose2, Scan, grid_from_picture
 from planar.geometry.limits import MAX_COORDINATE, is_within
 
@@ -65,10 +65,10 @@ class Localizer:
         self._free_space = FreeSpace(grid)
         self._odom_in_map: Optional[Pose2] = None
         self._base_in_odom = Pose2()
-        self._begin: Callable[[], None] = self._start_anywhere
+        self._start_filter: Callable[[], None] = self._start_anywhere
         self._update_policy, self._updates = UpdatePolicy(), 0
         self._covariance = np.zeros((3, 3))
-        self._quality: Optional[Quality] = None
+        self._quality: Optional[ScanQuality] = None
         self._configure(settings)
         self.set_pose(InitialPose().pose, InitialPose().covariance)
 
@@ -99,7 +99,7 @@ class Localizer:
         return self._updates
 
     @property
-    def quality(self) -> Optional[Quality]:
+    def quality(self) -> Optional[ScanQuality]:
         """How well the last scan fits the map at the estimate; None before the first estimate."""
         return self._quality
 
@@ -109,7 +109,7 @@ class Localizer:
         return self._detector.is_lost
 
     @property
-    def fit_grid(self) -> OccupancyGrid:
+    def likelihood_grid(self) -> OccupancyGrid:
         """The likelihood field as a grid of 0 (far from any obstacle) to 100 (on one), to look at."""
         fits = np.rint(100.0 * self._likelihood.field.fit[1:-1, 1:-1]).astype(np.int8)
         return OccupancyGrid(fits, self._grid.resolution, self._grid.origin)
@@ -123,28 +123,28 @@ class Localizer:
         updated_at = self._update_policy.updated_at
         if self._updates > 0 and self._odom_in_map is not None:
             base_in_map, updated_at = self._odom_in_map @ self._base_in_odom, self._base_in_odom
-            self._begin = partial(self._start_around, base_in_map, self._covariance)
-        self._begin()
+            self._start_filter = partial(self._start_around, base_in_map, self._covariance)
+        self._start_filter()
         self._update_policy = UpdatePolicy(updated_at)
 
     def set_pose(self, base_in_map: Pose2, pose_covariance: np.ndarray) -> None:
         """Starts anew around a pose; ``pose_covariance``: (3, 3), m^2 and rad^2."""
-        if not can_start_from(base_in_map, pose_covariance):
+        if not is_valid_initial_pose(base_in_map, pose_covariance):
             raise LocalizationError("a pose to start from must be finite, and where a robot can be")
-        self._begin = partial(self._start_around, base_in_map, np.array(pose_covariance))
-        self._begin()
+        self._start_filter = partial(self._start_around, base_in_map, np.array(pose_covariance))
+        self._start_filter()
 
-    def go_on(self, belief: Belief) -> None:
+    def restore(self, belief: Belief) -> None:
         """Starts with what another one believed; odometry has gone on since."""
-        self._begin = partial(self._start_with, belief)
-        self._begin()
+        self._start_filter = partial(self._start_with, belief)
+        self._start_filter()
         self._update_policy = UpdatePolicy(belief.base_in_odom)
         self._odom_in_map = belief.odom_in_map
 
-    def scatter(self) -> None:
+    def start_global_localization(self) -> None:
         """Starts anew with particles all over the free space: global localization."""
-        self._begin = self._start_anywhere
-        self._begin()
+        self._start_filter = self._start_anywhere
+        self._start_filter()
 
     def request_update(self) -> None:
         """Makes the next scan count even if the robot stands still."""
@@ -162,12 +162,12 @@ class Localizer:
         estimate = None
         if self._update_policy.is_due(base_in_odom, laser, scan.stamp, self._settings):
             self._move(base_in_odom)  # first, as a motion that cannot be followed is not to be lost
-            self._update_policy.take(base_in_odom, laser)
+            self._update_policy.record_update(base_in_odom, laser)
             self._weigh(beams)
             is_resampled = self._resample_if_due(beams)
             if is_resampled or self._updates == 1:
                 estimate = self._estimate(base_in_odom, scan)
-        self._judge(base_in_odom, beams, scan.stamp)
+        self._evaluate_fit(base_in_odom, beams, scan.stamp)
         return estimate
 
     def _configure(self, settings: LocalizerSettings) -> None:
@@ -204,25 +204,25 @@ class Localizer:
     def _weigh(self, beams: Beams) -> None:
         if self._settings.beams >= 2:
             poses, has_converged = self._filter.particles.poses, self._filter.has_converged
-            self._filter.weigh(self._likelihood.logarithms(poses, beams, has_converged), self._settings)
+            self._filter.weigh(self._likelihood.log_likelihoods(poses, beams, has_converged), self._settings)
         self._updates += 1
 
     def _resample_if_due(self, beams: Beams) -> bool:
         """Draws anew every ``resample_interval`` updates."""
         is_due = self._updates % self._settings.resample_interval == 0
-        if is_due and self._filter.is_worth_resampling(self._settings):
-            self._filter.resample(self._settings, *self._newcomers(beams))
+        if is_due and self._filter.should_resample(self._settings):
+            self._filter.resample(self._settings, *self._injected_poses(beams))
         return is_due
 
-    def _newcomers(self, beams: Beams) -> Tuple[float, DrawPoses]:
+    def _injected_poses(self, beams: Beams) -> Tuple[float, DrawPoses]:
         """Which share of the particles comes from elsewhere, and from where (augmented and mixture MCL)."""
         if self._settings.recover_when_lost and self.is_lost:
             places = find_hypotheses(beams, self._likelihood.field, self._grid, self._free_space, self._rng)
             if len(places) > 0:
                 return _RECOVERY_SHARE, places.draw
-        fallen, spread = self._filter.take_fallen_share(), self._matched_spread
-        is_sure = self._quality is not None and self._quality.is_sure
-        if fallen == 0.0 and is_sure and self._odom_in_map is not None and spread is not None:
+        fallen, spread = self._filter.likelihood_drop(), self._matched_spread
+        confirms_pose = self._quality is not None and self._quality.confirms_pose
+        if fallen == 0.0 and confirms_pose and self._odom_in_map is not None and spread is not None:
             return _MATCHED_SHARE, partial(gaussian_poses, self._odom_in_map @ self._base_in_odom, spread)
         return fallen, self._free_space.draw
 
@@ -231,7 +231,7 @@ class Localizer:
         base_in_map, covariance = mean_and_covariance(cluster)
         if self._settings.refine_pose:
             ends_xy = all_beams(scan, self._settings).ends_xy
-            base_in_map = matched(base_in_map, covariance, ends_xy, self._likelihood.field)
+            base_in_map = match_scan(base_in_map, covariance, ends_xy, self._likelihood.field)
             self._matched_spread = covariance
         if cluster is not self.particles:
             _, covariance = mean_and_covariance(self.particles)
@@ -239,17 +239,17 @@ class Localizer:
         self._covariance = covariance
         return Estimate(base_in_map, self._covariance)
 
-    def _judge(self, base_in_odom: Pose2, beams: Beams, stamp: float) -> None:
+    def _evaluate_fit(self, base_in_odom: Pose2, beams: Beams, stamp: float) -> None:
         if self._odom_in_map is None:
             return
         base_in_map = self._odom_in_map @ base_in_odom
-        self._quality = quality_of(base_in_map, beams, self._likelihood.field, self._grid)
-        self._detector.take(self._quality, stamp)
-        if self._settings.recover_when_lost and self._quality.is_doubtful:
+        self._quality = scan_quality(base_in_map, beams, self._likelihood.field, self._grid)
+        self._detector.add(self._quality, stamp)
+        if self._settings.recover_when_lost and self._quality.contradicts_pose:
             self._update_policy.request()  # a robot that stands would never find itself
 
 
-def can_start_from(base_in_map: Pose2, covariance: np.ndarray) -> bool:
+def is_valid_initial_pose(base_in_map: Pose2, covariance: np.ndarray) -> bool:
     """Whether a Localizer takes this pose, with its covariance (3, 3), to start from."""
     return base_in_map.is_in_range() and is_within(MAX_COORDINATE, *np.ravel(covariance))
 
@@ -259,7 +259,7 @@ def warm_up(settings: LocalizerSettings) -> None:
     grid = grid_from_picture("####\n#..#\n####")
     scan = Scan(0.0, -1.0, 0.5, np.full(5, 0.5, dtype=np.float32), 0.1, 2.0)
     localizer = Localizer(grid, settings, np.random.default_rng(0))
-    localizer.scatter()
+    localizer.start_global_localization()
     for step in range(settings.resample_interval):
         localizer.request_update()
         localizer.update(Pose2(0.01 * step, 0.0, 0.0), scan)

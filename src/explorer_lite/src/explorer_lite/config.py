@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from planar.config.listing import Section
+from planar.config.config_file import Section
 from planar.config.parameters import POSITIVE, ZERO_OR_MORE, at_least, check_parameters, parameter
 from planar.config.settings import check
 

@@ -13,7 +13,7 @@ from explorer_lite.progress import GoalProgressChecker
 from explorer_lite.targets import ReachableSpace, Target, TargetFinder, reachable_space
 from planar import FREE, OccupancyGrid, Pose2, grid_from_picture
 from planar.driving import FinishTask, GoalFailed, GoalReached
-from planar.elapsed import ElapsedTime
+from planar.elapsed_time import ElapsedTime
 
 # Displacement of a frontier's middle above which its goal is sent again [m].
 RESEND_DISTANCE = 0.5
@@ -114,7 +114,7 @@ class Explorer:
         Returns:
             An order; None to continue with the last one.
         """
-        now = self._elapsed.at(now)
+        now = self._elapsed.update(now)
         if grid is not None:
             self._grid, self._grid_time = known_part(grid), now
         if self._grid is None or self.state in (ExplorerState.DONE, ExplorerState.FAILED):

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from planar.config.listing import Section
+from planar.config.config_file import Section
 from planar.config.parameters import Interval, check_parameters, parameter
 
 

@@ -24,7 +24,7 @@ def load_kernels() -> None:
     from home_service.headless import LOCALIZATION_CONFIG, NAVIGATION_CONFIG
     from move_base_lite import load_settings
     from move_base_lite.warmup import warm_up as warm_up_navigator
-    from planar.config.settings_file import settings_from_yaml
+    from planar.config.parameters import settings_from_yaml
 
     warm_up_localizer(settings_from_yaml(LocalizerSettings, LOCALIZATION_CONFIG)[0])
     warm_up_navigator(load_settings(NAVIGATION_CONFIG))

@@ -11,7 +11,7 @@ import numpy as np
 from laboratory.worlds.custom import CONTRACT, CustomWorlds, load_generator
 from laboratory.worlds.source import Arena, WorldSource
 from planar import FREE
-from planar.contract_check import CheckSuite, expect, plugin_finder, run_checks
+from planar.plugin_check import CheckSuite, expect, plugin_finder, run_checks
 from planar.plugins import PluginError
 from sim_bridge import Simulation
 

@@ -6,7 +6,7 @@ from typing import Deque, Optional, Union
 
 from planar import Pose2
 from planar.driving import GoalFailed, GoalReached, RobotDisplaced
-from planar.elapsed import ElapsedTime
+from planar.elapsed_time import ElapsedTime
 
 # Below this fit a scan contradicts the estimated pose. The fit is amcl_lite's probability that the estimate
 # is within half a metre of the true pose.
@@ -98,7 +98,7 @@ class ArrivalCheck:
         return RobotDisplaced() if was_confirmed and _contradicts(fit) else None
 
     def _wait_standing(self, fit: Optional[float], now: float) -> Optional[ResendGoal]:
-        if self._standing is None or self._standing.at(now) < STANDING_SECONDS:
+        if self._standing is None or self._standing.update(now) < STANDING_SECONDS:
             return None
         self._standing, self._was_resent = None, True
         self._was_relocalized = not _contradicts(fit)

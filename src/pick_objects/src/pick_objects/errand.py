@@ -19,7 +19,7 @@ from pick_objects.mission import Delivery, Mission, MissionError
 from pick_objects.schedule import DeliverySchedule
 from planar import Pose2
 from planar.driving import FinishTask, GoalFailed, GoalReached, RobotDisplaced
-from planar.elapsed import ElapsedTime
+from planar.elapsed_time import ElapsedTime
 from planar.maps.places import NamedPlace
 
 
@@ -82,7 +82,7 @@ class Errand:
         Returns:
             The next order; None while nothing changes.
         """
-        now = self._elapsed.at(now)
+        now = self._elapsed.update(now)
         if self._is_over:
             return None
         if self.is_cancelled:
@@ -189,7 +189,7 @@ class Errand:
         if self._is_over:
             return 0.0
         settings, places, where = self.mission.settings, self.mission.places, self.place
-        left = self._driving_time.seconds_left(self._elapsed.at(now))
+        left = self._driving_time.seconds_left(self._elapsed.update(now))
         for job in self.jobs:
             if job.stage in ENDED:
                 continue

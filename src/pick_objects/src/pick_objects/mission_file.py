@@ -79,7 +79,7 @@ def _check_free(place: NamedPlace, entry: Table, grid: OccupancyGrid) -> None:
     for part, pose in zip([entry, *entry.tables("approaches")], place.poses):
         obstruction = obstruction_at(pose, grid)
         if obstruction:
-            raise part.complaint("x", f"and y: ({pose.x:g}, {pose.y:g}) {obstruction}")
+            raise part.error_at("x", f"and y: ({pose.x:g}, {pose.y:g}) {obstruction}")
 
 
 def _objects(table: Table) -> Dict[str, MissionObject]:
@@ -107,20 +107,20 @@ def _settings(table: Table, defaults: ErrandSettings) -> ErrandSettings:
         return defaults
     entry = table.table("settings")
     entry.allow_only(*(field.name for field in fields(ErrandSettings)))
-    settings, _ = settings_from(ErrandSettings, {**vars(defaults), **entry.values()}, where=entry.place_of)
+    settings, _ = settings_from(ErrandSettings, {**vars(defaults), **entry.values()}, where=entry.location_of)
     return settings
 
 
 def _deliveries(table: Table, places: Places, objects: Mapping[str, MissionObject]) -> Tuple[Delivery, ...]:
     entries = table.tables("deliveries")
     if not entries:
-        raise table.complaint("deliveries", "are missing: [{object: ..., from: ..., to: ...}]")
+        raise table.error_at("deliveries", "are missing: [{object: ..., from: ..., to: ...}]")
     deliveries: List[Delivery] = []
     lines: Dict[str, Table] = {}
     for number, entry in enumerate(entries, 1):
         delivery = _delivery(entry, number, places, objects)
         if delivery.name in lines:
-            raise entry.complaint("name", f"{delivery.name} is that of another delivery already")
+            raise entry.error_at("name", f"{delivery.name} is that of another delivery already")
         lines[delivery.name] = entry
         deliveries.append(delivery)
     for delivery in deliveries:
@@ -147,7 +147,7 @@ def _delivery(entry: Table, number: int, places: Places, objects: Mapping[str, M
 def _check_name(entry: Table, key: str, names, known, kind: str) -> None:
     for name in names:
         if name not in known:
-            raise entry.complaint(key, f"names no {kind}: {name}{hint_or_choices(name, known)}")
+            raise entry.error_at(key, f"names no {kind}: {name}{hint_or_choices(name, known)}")
 
 
 def _check_cycles(deliveries: List[Delivery], lines: Mapping[str, Table]) -> None:
@@ -163,7 +163,7 @@ def _check_cycles(deliveries: List[Delivery], lines: Mapping[str, Table]) -> Non
         free = [name for name, others in waits_for.items() if not others & set(waits_for)]
         if not free:
             name = next(name for name in waits_for if set(lines[name].texts("after")) & set(waits_for))
-            raise lines[name].complaint("after", f"makes a cycle: {', '.join(waits_for)} wait for each other")
+            raise lines[name].error_at("after", f"makes a cycle: {', '.join(waits_for)} wait for each other")
         for name in free:
             del waits_for[name]
 

@@ -7,7 +7,7 @@ Pure: numpy, scipy and numba only. Lengths are metres, angles radians (REP 103);
 """
 
 from planar.errors import PlanarError, SettingsError
-from planar.files.atomically import FileWriteError, write_atomically
+from planar.files.writing import FileWriteError, write_atomically
 from planar.geometry.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid, grid_from_picture
 from planar.geometry.pose import Pose2, Twist2, wrap
 from planar.geometry.scan import Scan

@@ -36,7 +36,7 @@ class PluginContract:
     settings: Optional[type]
     group: str
 
-    def missing(self, found: Any) -> List[str]:
+    def violations(self, found: Any) -> List[str]:
         """What ``found`` lacks, for people; nothing if it keeps the contract."""
         if not inspect.isclass(found):
             return ["it is no class"]
@@ -71,7 +71,7 @@ def load_plugin(name: str, contract: PluginContract) -> Optional[type]:
         if entry is None:
             return None
         found = _from_module(name, *entry.value.split(":"))
-    lacks = contract.missing(found)
+    lacks = contract.violations(found)
     if lacks:
         raise PluginError(f"{name} is no {contract.kind}: {', '.join(lacks)}")
     return found

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, Callable, List, Mapping, Tuple
 
 from planar import PlanarError, write_atomically
-from planar.files.tum import tum_text
+from planar.files.writing import tum_text
 from run_report.page import report_html
 from run_report.picture import run_frames, run_picture, save_animation
 from run_report.record import RunRecord, save_record

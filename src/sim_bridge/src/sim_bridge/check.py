@@ -9,7 +9,7 @@ from typing import List, Tuple
 import numpy as np
 
 from planar import Pose2, Scan, Twist2
-from planar.contract_check import CheckSuite, expect, plugin_finder, run_checks
+from planar.plugin_check import CheckSuite, expect, plugin_finder, run_checks
 from sim_bridge.faults import Fault, FaultContext, FaultInjector, kind_named
 from sim_bridge.faults.custom import CONTRACT
 from sim_bridge.faults.registry import make_fault

@@ -3,7 +3,7 @@
 import sys
 from dataclasses import dataclass
 
-from planar.config.listing import Section
+from planar.config.config_file import Section
 from planar.config.parameters import POSITIVE, Interval, check_parameters, parameter, parameters_of
 from planar.config.settings import check
 from sim_bridge.noise import NOISE_PROFILES, NOT_NEGATIVE, NoiseSettings

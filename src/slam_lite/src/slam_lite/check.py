@@ -8,8 +8,8 @@ import sys
 import numpy as np
 
 from planar import OccupancyGrid, Pose2, Scan, grid_from_picture, wrap
-from planar.contract_check import CheckSuite, expect, plugin_finder, run_checks
 from planar.geometry.ray_casting import cast_rays
+from planar.plugin_check import CheckSuite, expect, plugin_finder, run_checks
 from slam_lite.config import MapperSettings
 from slam_lite.matching.local_map import LocalMap, Match
 from slam_lite.matching.scan_matcher import CONTRACT, Prediction, scan_matcher_of

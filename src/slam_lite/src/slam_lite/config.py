@@ -6,7 +6,7 @@ Names and defaults are those of gmapping 1.4 where it has the parameter.
 from dataclasses import dataclass
 from typing import ClassVar, Mapping, Tuple
 
-from planar.config.listing import Section
+from planar.config.config_file import Section
 from planar.config.parameters import Interval, check_parameters, parameter
 from planar.config.settings import check
 from planar.plugins import check_plugin_name

@@ -170,7 +170,7 @@ class Mapper:
 
     def grid(self) -> OccupancyGrid:
         """Render the map of all keyframes at their present poses from scratch."""
-        return self.grid_in_bands().joined()
+        return self.grid_in_bands().assemble()
 
     def grid_in_bands(self) -> BandedGrid:
         """Render the map band by band on use, so that its cells are never all in memory."""

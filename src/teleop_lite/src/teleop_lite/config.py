@@ -3,7 +3,7 @@
 import sys
 from dataclasses import dataclass
 
-from planar.config.listing import Section
+from planar.config.config_file import Section
 from planar.config.parameters import POSITIVE, check_parameters, parameter
 
 _SPEED = POSITIVE._replace(high=sys.float_info.max)

@@ -11,9 +11,9 @@ from add_markers.boxes import HEIGHT, RIDING_HEIGHT
 from add_markers.config import MarkerSettings
 from add_markers.ros.simulator_boxes import SimulatedBoxes
 from planar import Pose2
-from planar_ros.messages.border import subscribe
 from planar_ros.messages.conversion import pose2_from_msg, pose2_to_msg
-from planar_ros.node.waiting import ReadinessMonitor
+from planar_ros.messages.validation import subscribe
+from planar_ros.node.readiness import ReadinessMonitor
 
 STATE_TOPIC = "pick_objects/mission_state"
 

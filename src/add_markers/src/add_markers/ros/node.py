@@ -14,14 +14,14 @@ from add_markers.ros.mission_markers import MissionMarkers
 from add_markers.ros.zones import zone_markers
 from planar import Pose2
 from planar.maps.places import load_pickup_and_dropoff
-from planar_ros.messages.border import subscribe
+from planar_ros.lockstep import LockstepClient
 from planar_ros.messages.conversion import pose2_from_msg, pose2_to_msg
 from planar_ros.messages.transforms import Transforms
-from planar_ros.node.keepsake import ParameterCheckpoint
+from planar_ros.messages.validation import subscribe
+from planar_ros.node.checkpoint import ParameterCheckpoint
 from planar_ros.node.parameters import read_settings
-from planar_ros.node.shell import run
-from planar_ros.node.waiting import ReadinessMonitor
-from planar_ros.step import LockstepClient
+from planar_ros.node.readiness import ReadinessMonitor
+from planar_ros.node.runner import run
 
 UPDATE_SECONDS = 0.1
 NOT_PUBLISHED = object()
@@ -49,7 +49,7 @@ class AddMarkersNode:
             self._locate = lambda: None
         else:
             self._checkpoint = ParameterCheckpoint() if settings.resume else None
-            stage = ParcelStage((self._checkpoint and self._checkpoint.found) or ParcelStage.WAITING)
+            stage = ParcelStage((self._checkpoint and self._checkpoint.latest) or ParcelStage.WAITING)
             self._parcel = CarriedParcel(*places, settings.pickup_seconds, stage)
             self._locate = self._locator(settings.pose_source)
         ReadinessMonitor(self._conditions())
@@ -64,7 +64,7 @@ class AddMarkersNode:
         self._robot = self._locate()
         self._show(self._parcel.update(now.to_sec(), self._robot))
         if self._checkpoint is not None and isinstance(self._parcel, CarriedParcel):
-            self._checkpoint.keep(self._parcel.stage.value)
+            self._checkpoint.save(self._parcel.stage.value)
 
     def _locator(self, source: str) -> Locate:
         if source == "tf":

@@ -20,8 +20,8 @@ from add_markers.boxes import HEIGHT, MASS, RIDING_HEIGHT, BoxPlacer, PlaceBox, 
 from add_markers.config import MarkerSettings
 from planar import Pose2
 from planar_ros.calls.services import ServiceError, call_service
-from planar_ros.messages.border import subscribe
 from planar_ros.messages.conversion import OccupancyGridArrays, grid_from_msg, pose2_from_msg, pose2_to_msg
+from planar_ros.messages.validation import subscribe
 
 START_SECONDS, ANSWER_SECONDS = 20.0, 5.0
 LINK = "link"

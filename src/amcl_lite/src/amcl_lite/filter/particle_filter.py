@@ -6,10 +6,10 @@ import numba
 import numpy as np
 
 from amcl_lite.config import LocalizerSettings
-from amcl_lite.filter.particles import ParticleSet, within_reach
-from amcl_lite.filter.resampling import DrawPoses, resampled
+from amcl_lite.filter.particles import ParticleSet, clamped_positions
+from amcl_lite.filter.resampling import DrawPoses, resample
 from amcl_lite.filter.statistics import has_converged
-from amcl_lite.motion.own_model import MotionModel
+from amcl_lite.motion.custom_model import MotionModel
 from planar import Pose2
 
 
@@ -25,25 +25,25 @@ class ParticleFilter:
     def move(self, base_before: Pose2, base_now: Pose2, motion: MotionModel) -> None:
         """Moves the particles on as the odometry moved."""
         poses = motion.moved(self.particles.poses, base_before, base_now, self._rng)
-        self.particles = ParticleSet(within_reach(poses), self.particles.weights)
+        self.particles = ParticleSet(clamped_positions(poses), self.particles.weights)
 
     def weigh(self, log_likelihoods: np.ndarray, settings: LocalizerSettings) -> None:
         """Multiplies the weights by likelihoods, given as logarithms (N,)."""
         weights, likelihood = _weighted(self.particles.weights, log_likelihoods)
         self.particles = ParticleSet(self.particles.poses, weights)
-        self._likelihood.take(likelihood, settings)
+        self._likelihood.add(likelihood, settings)
 
-    def is_worth_resampling(self, settings: LocalizerSettings) -> bool:
+    def should_resample(self, settings: LocalizerSettings) -> bool:
         """Whether it is always done, or the weights have become uneven."""
         return not settings.selective_resampling or 2.0 * self.particles.effective_size <= self.particles.size
 
-    def take_fallen_share(self) -> float:
+    def likelihood_drop(self) -> float:
         """By how much the likelihood has fallen; if at all, what it was before is forgotten."""
-        return self._likelihood.take_fallen_share()
+        return self._likelihood.likelihood_drop()
 
     def resample(self, settings: LocalizerSettings, share: float, draw: DrawPoses) -> None:
         """Draws particles anew by weight, but for a share that comes from ``draw``."""
-        self.particles = resampled(self.particles, settings, share, draw, self._rng)
+        self.particles = resample(self.particles, settings, share, draw, self._rng)
         self.has_converged = has_converged(self.particles)
 
 
@@ -53,11 +53,11 @@ class _LikelihoodTrend:
     def __init__(self):
         self._slow = self._fast = 0.0
 
-    def take(self, likelihood: float, settings: LocalizerSettings) -> None:
+    def add(self, likelihood: float, settings: LocalizerSettings) -> None:
         self._slow = _decayed(self._slow, likelihood, settings.recovery_alpha_slow)
         self._fast = _decayed(self._fast, likelihood, settings.recovery_alpha_fast)
 
-    def take_fallen_share(self) -> float:
+    def likelihood_drop(self) -> float:
         """By how much the short-term average has fallen below the other; if at all, both start anew."""
         if self._fast >= self._slow:
             return 0.0

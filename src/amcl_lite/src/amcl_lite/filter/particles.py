@@ -43,10 +43,10 @@ def gaussian_poses(mean: Pose2, covariance: np.ndarray, count: int, rng: np.rand
     """Poses (count, 3) from a normal distribution; ``covariance``: (3, 3), may be singular."""
     eigenvalues, eigenvectors = np.linalg.eigh(covariance)
     spread = eigenvectors * np.sqrt(np.maximum(eigenvalues, 0.0))
-    return within_reach(mean.as_array() + rng.standard_normal((count, 3)) @ spread.T)
+    return clamped_positions(mean.as_array() + rng.standard_normal((count, 3)) @ spread.T)
 
 
-def within_reach(poses: np.ndarray) -> np.ndarray:
+def clamped_positions(poses: np.ndarray) -> np.ndarray:
     """The poses (N, 3), with those beyond MAX_COORDINATE brought back to there: a robot can be no farther."""
     np.clip(poses[:, :2], -MAX_COORDINATE, MAX_COORDINATE, out=poses[:, :2])
     return poses

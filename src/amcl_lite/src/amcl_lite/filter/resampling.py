@@ -13,7 +13,7 @@ from amcl_lite.filter.particles import ParticleSet, equally_weighted
 DrawPoses = Callable[[int, np.random.Generator], np.ndarray]
 
 
-def resampled(
+def resample(
     particles: ParticleSet,
     settings: LocalizerSettings,
     injected_share: float,

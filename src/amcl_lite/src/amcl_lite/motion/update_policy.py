@@ -36,7 +36,7 @@ class UpdatePolicy:
             self._lasers_done.clear()
         return laser not in self._lasers_done
 
-    def take(self, base_in_odom: Pose2, laser: str) -> None:
+    def record_update(self, base_in_odom: Pose2, laser: str) -> None:
         """Notes that a scan is taken."""
         self.updated_at = base_in_odom
         self._lasers_done.add(laser)

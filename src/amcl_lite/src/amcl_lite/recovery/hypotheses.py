@@ -5,10 +5,10 @@ from typing import List, Tuple
 import numpy as np
 
 from amcl_lite.filter.particles import FreeSpace
-from amcl_lite.recovery.quality import quality_of
+from amcl_lite.recovery.quality import scan_quality
 from amcl_lite.sensor.beams import Beams
 from amcl_lite.sensor.likelihood_field import LikelihoodField
-from amcl_lite.sensor.scan_matching import matched
+from amcl_lite.sensor.scan_matching import match_scan
 from amcl_lite.sensor.sensor_model import mean_fits
 from planar import OCCUPIED, OccupancyGrid, Pose2
 
@@ -21,7 +21,7 @@ _BELIEVABLE = 0.5
 _BEAMS_TO_DRAW_BY = 30
 
 
-class Hypotheses:
+class PoseHypotheses:
     """Some poses at which a scan fits the map, better ones first; ``poses``: (N, 3)."""
 
     def __init__(self, poses: np.ndarray, free_space: FreeSpace):
@@ -44,7 +44,7 @@ def find_hypotheses(
     grid: OccupancyGrid,
     free_space: FreeSpace,
     rng: np.random.Generator,
-) -> Hypotheses:
+) -> PoseHypotheses:
     """Draws poses from the free space, pulls the best by scan matching, keeps those that are believable."""
     ends_xy = beams.ends_xy
     drawn = free_space.draw(_DRAWN, rng)
@@ -52,12 +52,12 @@ def find_hypotheses(
     best = drawn[np.argsort(-mean_fits(drawn, few, field), kind="stable")[:_MATCHED]]
     found: List[Tuple[float, Pose2]] = []
     for pose in best:
-        place = matched(Pose2.from_array(pose), _REACH, ends_xy, field)
+        place = match_scan(Pose2.from_array(pose), _REACH, ends_xy, field)
         if grid.value_at(place.x, place.y) == OCCUPIED:
             continue
-        probability = quality_of(place, beams, field, grid).probability
+        probability = scan_quality(place, beams, field, grid).probability
         if probability > _BELIEVABLE and all(place.distance_to(other) > 0.2 for _, other in found):
             found.append((probability, place))
     found.sort(key=lambda pair: -pair[0])
     poses = np.array([place.as_array() for _, place in found[:_KEPT]]).reshape(-1, 3)
-    return Hypotheses(poses, free_space)
+    return PoseHypotheses(poses, free_space)

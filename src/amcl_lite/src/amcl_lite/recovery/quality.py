@@ -7,7 +7,7 @@ import numba
 import numpy as np
 
 from amcl_lite.sensor.beams import Beams
-from amcl_lite.sensor.likelihood_field import LikelihoodField, fit_at, placed
+from amcl_lite.sensor.likelihood_field import LikelihoodField, fit_at, pose_in_cells
 from planar import OccupancyGrid, Pose2
 from planar.geometry.ray_casting import cast_rays
 
@@ -26,11 +26,11 @@ _BIAS, _PER_EXPLAINED, _PER_THROUGH = -6.85, 17.2, -9.8
 SMOOTHING_SECONDS = 1.0
 LOST_BELOW, FOUND_ABOVE = 0.2, 0.7
 # From which on a single scan is believed.
-SURE_ABOVE = 0.99
+CONFIRMED_ABOVE = 0.99
 
 
 @dataclass(frozen=True)
-class Quality:
+class ScanQuality:
     """``probability``: that the pose is right to half a metre, judged by this scan alone, 0 to 1.
 
     ``explained``: how well the beams' ends fit the map, 0 to 1. ``through``: the share of beams that would
@@ -44,32 +44,34 @@ class Quality:
     mean_distance: float
 
     @property
-    def is_doubtful(self) -> bool:
+    def contradicts_pose(self) -> bool:
         """Whether the scan speaks against the pose."""
         return self.probability < LOST_BELOW
 
     @property
-    def is_sure(self) -> bool:
+    def confirms_pose(self) -> bool:
         """Whether the scan all but proves the pose."""
-        return self.probability > SURE_ABOVE
+        return self.probability > CONFIRMED_ABOVE
 
 
-def quality_of(base_in_map: Pose2, beams: Beams, field: LikelihoodField, grid: OccupancyGrid) -> Quality:
+def scan_quality(
+    base_in_map: Pose2, beams: Beams, field: LikelihoodField, grid: OccupancyGrid
+) -> ScanQuality:
     """Judges a pose by the beams of a scan; the fewer of them met anything, the less they tell."""
     laser_in_map = base_in_map @ Pose2(float(beams.start_xy[0]), float(beams.start_xy[1]), 0.0)
     expected = cast_rays(grid, laser_in_map, beams.directions, beams.max_range)
     x, y, yaw = base_in_map.x, base_in_map.y, base_in_map.yaw
     explained, through, mean_distance = _judged(
-        x, y, yaw, beams.ends_xy, beams.ranges, expected, field.into_cells, field.fit, field.sigma
+        x, y, yaw, beams.ends_xy, beams.ranges, expected, field.map_to_cells, field.fit, field.sigma
     )
     looked_at = max(len(beams.ranges) + beams.unmeasured, 1)
     met, through = len(beams.ends_xy) / looked_at, through / looked_at
     evidence = met * (_BIAS + _PER_EXPLAINED * explained) + _PER_THROUGH * through
-    return Quality(1.0 / (1.0 + math.exp(-evidence)), explained, through, mean_distance)
+    return ScanQuality(1.0 / (1.0 + math.exp(-evidence)), explained, through, mean_distance)
 
 
 @numba.njit(cache=True)
-def _judged(x, y, yaw, ends_xy, ranges, expected, into_cells, fit, sigma):
+def _judged(x, y, yaw, ends_xy, ranges, expected, map_to_cells, fit, sigma):
     """How well beams are explained, how many went through walls, the mean distance (inf: no beam met)."""
     through = 0
     for i in range(ranges.size):
@@ -77,7 +79,7 @@ def _judged(x, y, yaw, ends_xy, ranges, expected, into_cells, fit, sigma):
     met = ends_xy.shape[0]
     if met == 0:
         return 0.0, through, np.inf
-    col, row, c, s = placed(x, y, yaw, into_cells)
+    col, row, c, s = pose_in_cells(x, y, yaw, map_to_cells)
     explained, distance = 0.0, 0.0
     for i in range(met):
         end_x, end_y = ends_xy[i, 0], ends_xy[i, 1]
@@ -96,7 +98,7 @@ class LostDetector:
         self._smoothed = 0.0 if is_lost else 1.0
         self._stamp = math.nan
 
-    def take(self, quality: Quality, stamp: float) -> bool:
+    def add(self, quality: ScanQuality, stamp: float) -> bool:
         """Takes in the quality of a scan made at ``stamp``, seconds; returns whether the robot is lost."""
         elapsed = stamp - self._stamp
         self._stamp = stamp
@@ -108,3 +110,25 @@ class LostDetector:
         else:
             self.is_lost = self._smoothed < LOST_BELOW
         return self.is_lost
+
+
+# Seconds of scans after which one of them should have fitted a map that is right.
+MISMATCH_SECONDS = 8.0
+
+
+class MapMismatchMonitor:
+    """Says once that no scan has fitted the map since the first."""
+
+    def __init__(self) -> None:
+        self._is_settled = False
+        self._first = math.nan
+
+    def add(self, quality: ScanQuality, stamp: float) -> bool:
+        """Takes in the quality of a scan made at ``stamp``, seconds; returns whether to say so now."""
+        if math.isnan(self._first) or stamp < self._first:
+            self._first = stamp
+        if quality.probability > FOUND_ABOVE:
+            self._is_settled = True
+        is_due = not self._is_settled and stamp - self._first > MISMATCH_SECONDS
+        self._is_settled = self._is_settled or is_due
+        return is_due

@@ -7,8 +7,8 @@ import rospy
 from tf2_msgs.msg import TFMessage
 
 from amcl_lite.ros.estimate_publisher import EstimatePublisher
-from amcl_lite.ros.shared_localizer import SharedLocalizer
-from planar_ros.bags.bag import TF, TF_STATIC, BagError, BagReader, absolute_name
+from amcl_lite.ros.locked_localizer import LockedLocalizer
+from planar_ros.bags.bag_reader import TF, TF_STATIC, BagError, BagReader, absolute_name
 from planar_ros.messages.conversion import LaserScanArrays
 from planar_ros.messages.scan_queue import ScanQueue
 from planar_ros.messages.transforms import Transforms
@@ -17,28 +17,28 @@ POLL_SECONDS = 0.01
 MAP_POLL_SECONDS = 0.5
 
 
-class BagRun:
+class BagPlayer:
     """Works through a bag, says where the robot is in the end, and ends the node."""
 
     def __init__(
-        self, shared: SharedLocalizer, transforms: Transforms, scans: ScanQueue, publisher: EstimatePublisher
+        self, shared: LockedLocalizer, transforms: Transforms, scans: ScanQueue, publisher: EstimatePublisher
     ):
         self._shared, self._transforms = shared, transforms
         self._scans, self._publisher = scans, publisher
 
-    def work_through(self, path: Path, localize_globally: bool) -> None:
+    def run(self, path: Path, localize_globally: bool) -> None:
         """Waits for the map first. Raises BagError."""
         while self._shared.localizer is None and not rospy.is_shutdown():
             time.sleep(MAP_POLL_SECONDS)
         if localize_globally:
-            self._shared.scatter()
+            self._shared.start_global_localization()
         start = time.monotonic()
         play_bag(path, self._transforms, self._scans, self._shared.settings.bag_scan_period)
         rospy.loginfo("Bag complete, took %.1f seconds to process, shutting down", time.monotonic() - start)
-        self._say_where()
+        self._log_final_pose()
         rospy.signal_shutdown("bag complete")
 
-    def _say_where(self):
+    def _log_final_pose(self):
         estimate, stamp = self._publisher.last_estimate, self._publisher.last_stamp
         if estimate is not None:
             pose = estimate.base_in_map
@@ -54,27 +54,27 @@ def play_bag(path: Path, transforms: Transforms, scans: ScanQueue, scan_period: 
     """
     scan_topic = absolute_name(scans.topic)
     # On a busy machine the echo comes so late that time seems to have jumped back.
-    scans.hear_no_more()
+    scans.unsubscribe()
     scan_publisher = rospy.Publisher(scans.topic, LaserScanArrays, queue_size=100)
     tf_publisher = rospy.Publisher("/tf", TFMessage, queue_size=100)
     bag = BagReader(path)
-    transforms.take(TFMessage(bag.first_static_transforms()), is_static=True)
+    transforms.add(TFMessage(bag.first_static_transforms()), is_static=True)
     for topic, message, _ in bag.messages([scan_topic, TF, TF_STATIC]):
         if rospy.is_shutdown():
             return
         if topic != scan_topic:
-            transforms.take(message, is_static=topic == TF_STATIC)
+            transforms.add(message, is_static=topic == TF_STATIC)
             tf_publisher.publish(message)
             continue
-        scans.take(message)
+        scans.add(message)
         scan_publisher.publish(message)
         _wait_until(lambda: scans.waiting < scans.size)
         if scan_period > 0.0:
             time.sleep(scan_period)
-    scans.take_no_more()
+    scans.finish()
     _wait_until(lambda: scans.waiting == 0)
-    if bag.gap:
-        raise BagError(f"{path}: {bag.gap}")
+    if bag.truncation:
+        raise BagError(f"{path}: {bag.truncation}")
 
 
 def _wait_until(is_so):

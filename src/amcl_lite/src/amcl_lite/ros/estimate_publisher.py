@@ -5,29 +5,29 @@ from typing import Optional
 import rospy
 
 from amcl_lite.localizer import Estimate, Localizer
-from amcl_lite.ros.shared_localizer import SharedLocalizer
-from amcl_lite.ros.start_pose import PoseKeeper
+from amcl_lite.ros.locked_localizer import LockedLocalizer
+from amcl_lite.ros.pose_checkpoint import PoseCheckpoint
 from amcl_lite.ros.tf_bridge import TfBridge
-from amcl_lite.ros.views import Views
+from amcl_lite.ros.topics import AmclTopics
 from planar import Pose2
 
 
 class EstimatePublisher:
     """Publishes what each scan has led to; ``last_estimate`` is of ``last_stamp``, None at first."""
 
-    def __init__(self, shared: SharedLocalizer, views: Views, tf_bridge: TfBridge):
+    def __init__(self, shared: LockedLocalizer, views: AmclTopics, tf_bridge: TfBridge):
         self.last_estimate: Optional[Estimate] = None
         self.last_stamp = rospy.Time(0)
         self._shared, self._views, self._tf_bridge = shared, views, tf_bridge
-        self._keeper = PoseKeeper()
-        self._belief_before = self._keeper.left_belief()
+        self._checkpoint = PoseCheckpoint()
+        self._saved_belief = self._checkpoint.load_belief()
         self._base_in_odom: Optional[Pose2] = None
 
-    def take_up(self, localizer: Localizer) -> None:
+    def restore_checkpoint(self, localizer: Localizer) -> None:
         """Before the first scan: goes on with what a node that has crashed believed."""
-        before, self._belief_before = self._belief_before, None
+        before, self._saved_belief = self._saved_belief, None
         if before is not None:
-            localizer.go_on(before)
+            localizer.restore(before)
 
     def publish(
         self,
@@ -40,25 +40,25 @@ class EstimatePublisher:
         """After each scan; ``is_updated``: whether it was worked in; ``estimate``: the new one, if any."""
         self._base_in_odom = base_in_odom
         if is_updated:
-            self._views.show_particles(localizer)
+            self._views.publish_particles(localizer)
         if estimate is not None:
             self.last_estimate, self.last_stamp = estimate, stamp
-            self._views.show_estimate(estimate, stamp)
+            self._views.publish_estimate(estimate, stamp)
         if localizer.odom_in_map is None or self.last_estimate is None:
             return
         self._tf_bridge.send(localizer.odom_in_map, stamp)
-        self._views.show_quality(localizer)
-        self._views.show_diagnostics(localizer, self.last_estimate)
+        self._views.publish_quality(localizer)
+        self._views.publish_diagnostics(localizer, self.last_estimate)
         belief = localizer.belief if estimate is None else None
         if belief is not None:
             rate, covariance = self._shared.settings.save_pose_rate, self.last_estimate.covariance
-            self._keeper.keep_if_due(rate, belief, base_in_odom, covariance)
+            self._checkpoint.save_if_due(rate, belief, base_in_odom, covariance)
 
-    def keep_pose(self) -> None:
+    def save_pose(self) -> None:
         """Before the node ends: a restarted one resumes where this one was."""
         with self._shared.lock:
             localizer = self._shared.localizer
             odom_in_map = None if localizer is None else localizer.odom_in_map
             base_in_odom, estimate = self._base_in_odom, self.last_estimate
             if odom_in_map is not None and base_in_odom is not None and estimate is not None:
-                self._keeper.keep(odom_in_map @ base_in_odom, estimate.covariance)
+                self._checkpoint.save(odom_in_map @ base_in_odom, estimate.covariance)

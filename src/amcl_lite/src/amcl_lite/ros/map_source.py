@@ -7,7 +7,7 @@ import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.srv import SetMapResponse
 
-from amcl_lite.ros.shared_localizer import SharedLocalizer
+from amcl_lite.ros.locked_localizer import LockedLocalizer
 from planar import OccupancyGrid, PlanarError
 from planar_ros.messages.conversion import (
     GetMapArrays,
@@ -30,12 +30,12 @@ class MapSource:
 
     def __init__(
         self,
-        shared: SharedLocalizer,
-        show_field: Callable[[OccupancyGrid], None],
-        take_pose: Callable[[PoseWithCovarianceStamped, bool], None],
+        shared: LockedLocalizer,
+        publish_likelihood_field: Callable[[OccupancyGrid], None],
+        handle_pose: Callable[[PoseWithCovarianceStamped, bool], None],
     ):
         self._shared = shared
-        self._show_field, self._take_pose = show_field, take_pose
+        self._show_field, self._handle_pose = publish_likelihood_field, handle_pose
         self._is_topic = shared.settings.use_map_topic
         rospy.Service("set_map", SetMapArrays, self._on_set_map)
         if self._is_topic:
@@ -73,7 +73,7 @@ class MapSource:
     def _on_set_map(self, request):
         try:
             self._install(request.map)
-            self._take_pose(request.initial_pose, self._shared.settings.force_update_after_set_map)
+            self._handle_pose(request.initial_pose, self._shared.settings.force_update_after_set_map)
         except PlanarError as error:
             rospy.logerr("map refused: %s", error)
             return SetMapResponse(success=False)
@@ -89,5 +89,5 @@ class MapSource:
                 message.header.frame_id,
                 map_frame,
             )
-        localizer = self._shared.start_on(grid_from_msg(message))
-        self._show_field(localizer.fit_grid)
+        localizer = self._shared.set_map(grid_from_msg(message))
+        self._show_field(localizer.likelihood_grid)

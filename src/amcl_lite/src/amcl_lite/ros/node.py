@@ -15,23 +15,23 @@ from std_srvs.srv import Empty, EmptyResponse
 from amcl_lite.config import CONFIG_FILES, NodeSettings
 from amcl_lite.localizer import warm_up
 from amcl_lite.ros.estimate_publisher import EstimatePublisher
-from amcl_lite.ros.initial_pose import InitialPoses
+from amcl_lite.ros.initial_pose import InitialPoseSubscriber
+from amcl_lite.ros.locked_localizer import LockedLocalizer
 from amcl_lite.ros.map_source import MapSource
-from amcl_lite.ros.scan_alarm import SCAN_ALARM_SECONDS, ScanAlarm
+from amcl_lite.ros.scan_watchdog import SCAN_TIMEOUT_SECONDS, ScanWatchdog
 from amcl_lite.ros.settings import changed_settings, read_node_settings
-from amcl_lite.ros.shared_localizer import SharedLocalizer
 from amcl_lite.ros.tf_bridge import TfBridge
-from amcl_lite.ros.views import Views
+from amcl_lite.ros.topics import AmclTopics
 from planar import PlanarError, SettingsError
-from planar.config.listing import render_yaml
+from planar.config.config_file import render_yaml
+from planar_ros.lockstep import LockstepClient
 from planar_ros.messages.conversion import frame_name
 from planar_ros.messages.scan_queue import ScanQueue
 from planar_ros.messages.transforms import Transforms
-from planar_ros.node.command_line import parse_known
+from planar_ros.node.entry import parse_known
+from planar_ros.node.readiness import ReadinessMonitor
 from planar_ros.node.reconfigure import SettingsReconfigureServer, dynamic_values
-from planar_ros.node.shell import run
-from planar_ros.node.waiting import ReadinessMonitor
-from planar_ros.step import LockstepClient
+from planar_ros.node.runner import run
 
 
 class AmclNode:
@@ -40,13 +40,13 @@ class AmclNode:
     def __init__(self, scan_topic: str = "scan"):
         self._step = LockstepClient.of_node()
         settings = read_node_settings()
-        self._shared = SharedLocalizer(settings)
+        self._shared = LockedLocalizer(settings)
         _warm_up(settings)
-        views = Views(self._shared)
+        views = AmclTopics(self._shared)
         self._transforms = Transforms()
         tf_bridge = TfBridge(self._transforms, self._shared)
         self._publisher = EstimatePublisher(self._shared, views, tf_bridge)
-        self._alarm = ScanAlarm(rospy.resolve_name(scan_topic))
+        self._watchdog = ScanWatchdog(rospy.resolve_name(scan_topic))
         self._scans = ScanQueue(
             self._transforms,
             settings.odom_frame,
@@ -57,11 +57,11 @@ class AmclNode:
         )
         rospy.Service("global_localization", Empty, self._on_global_localization)
         rospy.Service("request_nomotion_update", Empty, self._on_request_update)
-        poses = InitialPoses(self._shared, tf_bridge, self._step)
-        self._map_source = MapSource(self._shared, views.show_field, poses.take)
-        self._alarm.start()
-        rospy.on_shutdown(self._publisher.keep_pose)
-        self._say_what_is_missing()
+        poses = InitialPoseSubscriber(self._shared, tf_bridge, self._step)
+        self._map_source = MapSource(self._shared, views.publish_likelihood_field, poses.handle)
+        self._watchdog.start()
+        rospy.on_shutdown(self._publisher.save_pose)
+        self._monitor_inputs()
         SettingsReconfigureServer(settings, self._on_reconfigure)
         self._step.join(lambda: settings.use_map_topic or self._shared.localizer is not None)
 
@@ -71,12 +71,12 @@ class AmclNode:
 
     def run_from_bag(self, path: str, localize_globally: bool) -> None:
         """Works through a bag, says where the robot is in the end, and ends the node."""
-        from amcl_lite.ros.bag_player import BagRun  # rosbag takes memory, and is rarely wanted
+        from amcl_lite.ros.bag_player import BagPlayer  # rosbag takes memory, and is rarely wanted
 
-        bag_run = BagRun(self._shared, self._transforms, self._scans, self._publisher)
-        bag_run.work_through(Path(path), localize_globally)
+        bag_player = BagPlayer(self._shared, self._transforms, self._scans, self._publisher)
+        bag_player.run(Path(path), localize_globally)
 
-    def _say_what_is_missing(self):
+    def _monitor_inputs(self):
         frames = self._shared.settings.odom_frame, self._shared.settings.base_frame
         ReadinessMonitor(
             {
@@ -88,7 +88,7 @@ class AmclNode:
         )
 
     def _on_global_localization(self, request):
-        self._shared.scatter()
+        self._shared.start_global_localization()
         return EmptyResponse()
 
     def _on_request_update(self, request):
@@ -97,23 +97,23 @@ class AmclNode:
 
     def _on_scan(self, message, scan, base_in_odom):
         stamp, laser = message.header.stamp, frame_name(message.header.frame_id)
-        self._alarm.hear()
+        self._watchdog.on_scan()
         with self._shared.lock:
             localizer = self._shared.localizer
             if localizer is not None:
                 try:
-                    self._publisher.take_up(localizer)
+                    self._publisher.restore_checkpoint(localizer)
                     updates = localizer.updates
                     estimate = localizer.update(base_in_odom, scan, laser)
                     is_updated = localizer.updates != updates
                     self._publisher.publish(localizer, estimate, is_updated, base_in_odom, stamp)
                 except PlanarError as error:
-                    rospy.logerr_throttle(SCAN_ALARM_SECONDS, f"scan ignored: {error}")
+                    rospy.logerr_throttle(SCAN_TIMEOUT_SECONDS, f"scan ignored: {error}")
         self._step.report(stamp)
 
     def _on_skipped_scan(self, message, reason):
-        rospy.logwarn_throttle(SCAN_ALARM_SECONDS, f"Failed to compute odom pose, skipping scan ({reason})")
-        self._alarm.hear()
+        rospy.logwarn_throttle(SCAN_TIMEOUT_SECONDS, f"Failed to compute odom pose, skipping scan ({reason})")
+        self._watchdog.on_scan()
         self._step.report(message.header.stamp)
 
     def _on_reconfigure(self, values):
@@ -123,7 +123,7 @@ class AmclNode:
             rospy.logerr("refused: %s", error)
             return dynamic_values(self._shared.settings)
         with self._shared.lock:
-            self._scans.use_frames(settings.odom_frame, settings.base_frame)
+            self._scans.set_frames(settings.odom_frame, settings.base_frame)
             self._shared.reconfigure(settings)
         return dynamic_values(settings)
 

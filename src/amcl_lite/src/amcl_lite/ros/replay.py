@@ -10,10 +10,9 @@ from amcl_lite.config import InitialPose, NodeSettings
 from amcl_lite.errors import LocalizationError
 from amcl_lite.localizer import Localizer
 from planar import Pose2, load_map, wrap
-from planar.config.parameters import official_names
-from planar.config.settings_file import settings_from_yaml
-from planar_ros.bags.bag import BagError
-from planar_ros.bags.replaying import (
+from planar.config.parameters import official_names, settings_from_yaml
+from planar_ros.bags.bag_reader import BagError
+from planar_ros.bags.offline_replay import (
     add_replay_options,
     load_settings,
     process_scans,
@@ -93,7 +92,7 @@ def _localizer(options: argparse.Namespace, settings: NodeSettings) -> Localizer
     localizer = Localizer(load_map(options.map), settings, rng)
     localizer.set_pose(Pose2(*options.start) if options.start else start.pose, start.covariance)
     if options.everywhere:
-        localizer.scatter()
+        localizer.start_global_localization()
     return localizer
 
 

@@ -4,7 +4,7 @@ from typing import Any, Mapping, Sequence
 
 import rospy
 
-from amcl_lite.config import MOTION_MODELS, SENSOR_MODELS, InitialPose, NodeSettings, advice
+from amcl_lite.config import MOTION_MODELS, SENSOR_MODELS, InitialPose, NodeSettings, settings_warnings
 from planar.config.parameters import official_names
 from planar.config.settings import settings_from
 from planar_ros.node.parameters import read_settings
@@ -18,7 +18,7 @@ def read_node_settings() -> NodeSettings:
     settings = read_settings(
         NodeSettings, official_names(NodeSettings), ignore=(*official_names(InitialPose), RESTORE)
     )
-    for line in advice(settings):
+    for line in settings_warnings(settings):
         rospy.logwarn(line)
     return settings
 

@@ -15,10 +15,10 @@ from std_msgs.msg import String
 from std_srvs.srv import Empty
 
 from planar import PlanarError
-from planar_ros.messages.border import subscribe
 from planar_ros.messages.conversion import pose2_from_msg
-from planar_ros.node.last_words import publish_on_shutdown
-from planar_ros.node.shell import fail, run
+from planar_ros.messages.validation import subscribe
+from planar_ros.node.flush import publish_on_shutdown
+from planar_ros.node.runner import fail, run
 
 # The particles are in one place when their standard deviations, metres and radians, are below these.
 SETTLED_WITHIN = np.array((0.2, 0.2, 0.1))

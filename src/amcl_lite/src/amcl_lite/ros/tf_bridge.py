@@ -4,7 +4,7 @@ from typing import Optional
 
 import rospy
 
-from amcl_lite.ros.shared_localizer import SharedLocalizer
+from amcl_lite.ros.locked_localizer import LockedLocalizer
 from planar import Pose2
 from planar_ros.messages.conversion import frame_name
 from planar_ros.messages.transforms import Transforms
@@ -13,7 +13,7 @@ from planar_ros.messages.transforms import Transforms
 class TfBridge:
     """Sends where odometry lies in the map, and says how far the robot has come by odometry."""
 
-    def __init__(self, transforms: Transforms, shared: SharedLocalizer):
+    def __init__(self, transforms: Transforms, shared: LockedLocalizer):
         self._transforms, self._shared = transforms, shared
         self.has_sent = False
 

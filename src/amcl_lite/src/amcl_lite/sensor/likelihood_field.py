@@ -9,10 +9,11 @@ import numba
 import numpy as np
 
 from planar import OCCUPIED, OccupancyGrid, Pose2
+from planar.deprecation import deprecated_names
 from planar.geometry.distance_field import distance_field
 
 
-class IntoCells(NamedTuple):
+class MapToCells(NamedTuple):
     """How poses in the map become columns, rows and headings of a field, for kernels.
 
     ``col``, ``row``, ``yaw``: where the map's origin lies; ``cos``, ``sin``: of ``yaw``, in cells per metre;
@@ -41,16 +42,16 @@ class LikelihoodField:
     origin: Pose2
 
     @cached_property
-    def into_cells(self) -> IntoCells:
+    def map_to_cells(self) -> MapToCells:
         map_in_grid, scale = self.origin.inverse(), 1.0 / self.resolution
         col, row, yaw = 1.0 + scale * map_in_grid.x, 1.0 + scale * map_in_grid.y, map_in_grid.yaw
-        return IntoCells(col, row, yaw, scale * math.cos(yaw), scale * math.sin(yaw), scale)
+        return MapToCells(col, row, yaw, scale * math.cos(yaw), scale * math.sin(yaw), scale)
 
-    def from_cells(self, col: float, row: float, yaw: float) -> Pose2:
+    def pose_from_cells(self, col: float, row: float, yaw: float) -> Pose2:
         """A pose given in cells of ``fit``, in the map."""
         return self.origin @ Pose2((col - 1.0) * self.resolution, (row - 1.0) * self.resolution, yaw)
 
-    def fit_at_distance(self, distance: float) -> float:
+    def value_at_distance(self, distance: float) -> float:
         """The field's value at this distance, metres, from the nearest obstacle."""
         return math.exp(-0.5 * (distance / self.sigma) ** 2)
 
@@ -64,14 +65,14 @@ def likelihood_field(grid: OccupancyGrid, sigma: float, max_distance: float) -> 
 
 
 @numba.njit(cache=True, inline="always")
-def placed(x, y, yaw, into_cells):
+def pose_in_cells(x, y, yaw, map_to_cells):
     """A pose in the map as column, row, and the cosine and sine of its heading in cells per metre."""
-    heading = yaw + into_cells.yaw
+    heading = yaw + map_to_cells.yaw
     return (
-        into_cells.col + into_cells.cos * x - into_cells.sin * y,
-        into_cells.row + into_cells.sin * x + into_cells.cos * y,
-        into_cells.scale * math.cos(heading),
-        into_cells.scale * math.sin(heading),
+        map_to_cells.col + map_to_cells.cos * x - map_to_cells.sin * y,
+        map_to_cells.row + map_to_cells.sin * x + map_to_cells.cos * y,
+        map_to_cells.scale * math.cos(heading),
+        map_to_cells.scale * math.sin(heading),
     )
 
 
@@ -81,3 +82,7 @@ def fit_at(fit, col, row):
     i = np.int32(min(max(row, 0.0), fit.shape[0] - 1.0))
     j = np.int32(min(max(col, 0.0), fit.shape[1] - 1.0))
     return fit[i, j]
+
+
+# numba's cache index of an older version names it: unknown, it would be an error instead of a stale cache.
+__getattr__ = deprecated_names(__name__, {"IntoCells": "MapToCells"})

@@ -4,8 +4,8 @@ import numpy as np
 
 from amcl_lite.config import LocalizerSettings
 from amcl_lite.sensor.beams import Beams
+from amcl_lite.sensor.custom_model import CustomSensorModel
 from amcl_lite.sensor.likelihood_field import likelihood_field
-from amcl_lite.sensor.own_model import GuardedSensorModel
 from amcl_lite.sensor.sensor_model import log_beam_model, log_likelihood_field, log_likelihood_field_prob
 from planar import FREE, OCCUPIED, OccupancyGrid
 
@@ -19,16 +19,16 @@ class ScanLikelihood:
     def __init__(self, grid: OccupancyGrid, settings: LocalizerSettings):
         self.field = likelihood_field(grid, settings.sigma_hit, settings.likelihood_max_distance)
         self._settings = settings
-        self._own = None
+        self._custom = None
         if settings.sensor_plugin:
-            self._own = GuardedSensorModel(grid, settings)
+            self._custom = CustomSensorModel(grid, settings)
         self._opaque_grid = _opaque(grid) if settings.sensor_model == "beam" else None
 
-    def logarithms(self, poses: np.ndarray, beams: Beams, has_converged: bool) -> np.ndarray:
+    def log_likelihoods(self, poses: np.ndarray, beams: Beams, has_converged: bool) -> np.ndarray:
         """Logarithms (N,) for particles (N, 3); beams are skipped only when these ``has_converged``."""
         settings = self._settings
-        if self._own is not None:
-            return self._own.log_likelihoods(poses, beams)
+        if self._custom is not None:
+            return self._custom.log_likelihoods(poses, beams)
         if self._opaque_grid is not None:
             return log_beam_model(poses, beams, self._opaque_grid, settings)
         if settings.sensor_model == "likelihood_field_prob":

@@ -10,7 +10,7 @@ import math
 import numba
 import numpy as np
 
-from amcl_lite.sensor.likelihood_field import LikelihoodField, placed
+from amcl_lite.sensor.likelihood_field import LikelihoodField, pose_in_cells
 from planar import Pose2
 
 # Standard deviation of a beam's misfit (1 - fit) at the right pose; what a typical lidar and map leave over.
@@ -27,25 +27,29 @@ _FARTHEST, _UNSURE = 4.0, 0.05
 _SAME_PLACE = 0.5
 
 
-def matched(guess: Pose2, covariance: np.ndarray, points_xy: np.ndarray, field: LikelihoodField) -> Pose2:
+def match_scan(guess: Pose2, covariance: np.ndarray, points_xy: np.ndarray, field: LikelihoodField) -> Pose2:
     """The most probable pose near a guess with ``covariance`` (3, 3); beam ends (N, 2) in the base frame."""
-    into = field.into_cells
+    into = field.map_to_cells
     jacobian = np.array(((into.cos, -into.sin, 0.0), (into.sin, into.cos, 0.0), (0.0, 0.0, 1.0)))
     spread = jacobian @ covariance @ jacobian.T + np.diag((1e-3, 1e-3, 1e-6))
     unsure = np.diag((_UNSURE * into.scale, _UNSURE * into.scale, _UNSURE)) ** 2
-    return field.from_cells(
+    return field.pose_from_cells(
         *_matched(guess.x, guess.y, guess.yaw, spread, unsure, points_xy, into, field.fit)
     )
 
 
 @numba.njit(cache=True)
-def _matched(x, y, yaw, spread, unsure, points_xy, into_cells, fit):
+def _matched(x, y, yaw, spread, unsure, points_xy, map_to_cells, fit):
     """The better of two sharp matches: one from the guess itself, one from where a blunt match leads.
 
     The guess itself if neither is near enough to it.
     """
-    col, row, _, _ = placed(x, y, yaw, into_cells)
-    start, prior, points = (col, row, yaw + into_cells.yaw), _inverse(spread), points_xy * into_cells.scale
+    col, row, _, _ = pose_in_cells(x, y, yaw, map_to_cells)
+    start, prior, points = (
+        (col, row, yaw + map_to_cells.yaw),
+        _inverse(spread),
+        points_xy * map_to_cells.scale,
+    )
     belief = _inverse(spread + unsure)
     near, near_cost = _descended(start, start, prior, points, fit, _SHARPNESS)
     if not _is_within_reach(near, start, belief):

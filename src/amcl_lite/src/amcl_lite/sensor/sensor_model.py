@@ -10,7 +10,7 @@ import numpy as np
 
 from amcl_lite.config import LocalizerSettings
 from amcl_lite.sensor.beams import Beams
-from amcl_lite.sensor.likelihood_field import LikelihoodField, fit_at, placed
+from amcl_lite.sensor.likelihood_field import LikelihoodField, fit_at, pose_in_cells
 from planar import OccupancyGrid
 from planar.geometry.ray_casting import cast_rays_from_many
 
@@ -23,7 +23,7 @@ def log_likelihood_field(
     The sum forgives: a beam that the map does not explain cannot rule out a pose.
     """
     sums = _sums_of_cubes(
-        poses, beams.ends_xy, field.into_cells, field.fit, settings.z_hit, _random(beams, settings)
+        poses, beams.ends_xy, field.map_to_cells, field.fit, settings.z_hit, _random(beams, settings)
     )
     return np.log1p(sums)
 
@@ -38,13 +38,13 @@ def log_likelihood_field_prob(
     """
     ends_xy = beams.ends_xy
     if skip_beams:
-        explained = field.fit_at_distance(settings.beam_skip_distance)
-        shares = _shares_explaining(poses, ends_xy, field.into_cells, field.fit, explained)
+        explained = field.value_at_distance(settings.beam_skip_distance)
+        shares = _shares_explaining(poses, ends_xy, field.map_to_cells, field.fit, explained)
         used = shares > settings.beam_skip_threshold
         if np.count_nonzero(~used) < settings.beam_skip_error_threshold * len(ends_xy):
             ends_xy = ends_xy[used]
     return _sums_of_logs(
-        poses, ends_xy, field.into_cells, field.fit, settings.z_hit, _random(beams, settings)
+        poses, ends_xy, field.map_to_cells, field.fit, settings.z_hit, _random(beams, settings)
     )
 
 
@@ -71,7 +71,7 @@ def log_beam_model(
 
 def mean_fits(poses: np.ndarray, ends_xy: np.ndarray, field: LikelihoodField) -> np.ndarray:
     """How well (N,), 0 to 1, beams that end at ``ends_xy`` (M, 2) fit the map on average; no probability."""
-    return _sums_of_fits(poses, ends_xy, field.into_cells, field.fit) / max(len(ends_xy), 1)
+    return _sums_of_fits(poses, ends_xy, field.map_to_cells, field.fit) / max(len(ends_xy), 1)
 
 
 def _random(beams: Beams, settings: LocalizerSettings) -> float:
@@ -82,10 +82,10 @@ def _random(beams: Beams, settings: LocalizerSettings) -> float:
 
 
 @numba.njit(cache=True, fastmath=True)
-def _sums_of_fits(poses, ends_xy, into_cells, fit):
+def _sums_of_fits(poses, ends_xy, map_to_cells, fit):
     sums = np.empty(poses.shape[0])
     for i in range(poses.shape[0]):
-        col, row, c, s = placed(poses[i, 0], poses[i, 1], poses[i, 2], into_cells)
+        col, row, c, s = pose_in_cells(poses[i, 0], poses[i, 1], poses[i, 2], map_to_cells)
         total = 0.0
         for j in range(ends_xy.shape[0]):
             x, y = ends_xy[j, 0], ends_xy[j, 1]
@@ -95,10 +95,10 @@ def _sums_of_fits(poses, ends_xy, into_cells, fit):
 
 
 @numba.njit(cache=True, fastmath=True)
-def _sums_of_cubes(poses, ends_xy, into_cells, fit, z_hit, random):
+def _sums_of_cubes(poses, ends_xy, map_to_cells, fit, z_hit, random):
     sums = np.empty(poses.shape[0])
     for i in range(poses.shape[0]):
-        col, row, c, s = placed(poses[i, 0], poses[i, 1], poses[i, 2], into_cells)
+        col, row, c, s = pose_in_cells(poses[i, 0], poses[i, 1], poses[i, 2], map_to_cells)
         total = 0.0
         for j in range(ends_xy.shape[0]):
             x, y = ends_xy[j, 0], ends_xy[j, 1]
@@ -109,11 +109,11 @@ def _sums_of_cubes(poses, ends_xy, into_cells, fit, z_hit, random):
 
 
 @numba.njit(cache=True)
-def _sums_of_logs(poses, ends_xy, into_cells, fit, z_hit, random):
+def _sums_of_logs(poses, ends_xy, map_to_cells, fit, z_hit, random):
     sums = np.empty(poses.shape[0])
     tiny = 1e-300  # z_rand may be 0
     for i in range(poses.shape[0]):
-        col, row, c, s = placed(poses[i, 0], poses[i, 1], poses[i, 2], into_cells)
+        col, row, c, s = pose_in_cells(poses[i, 0], poses[i, 1], poses[i, 2], map_to_cells)
         total = 0.0
         for j in range(ends_xy.shape[0]):
             x, y = ends_xy[j, 0], ends_xy[j, 1]
@@ -124,10 +124,10 @@ def _sums_of_logs(poses, ends_xy, into_cells, fit, z_hit, random):
 
 
 @numba.njit(cache=True)
-def _shares_explaining(poses, ends_xy, into_cells, fit, explained):
+def _shares_explaining(poses, ends_xy, map_to_cells, fit, explained):
     counts = np.zeros(ends_xy.shape[0])
     for i in range(poses.shape[0]):
-        col, row, c, s = placed(poses[i, 0], poses[i, 1], poses[i, 2], into_cells)
+        col, row, c, s = pose_in_cells(poses[i, 0], poses[i, 1], poses[i, 2], map_to_cells)
         for j in range(ends_xy.shape[0]):
             x, y = ends_xy[j, 0], ends_xy[j, 1]
             counts[j] += fit_at(fit, col + c * x - s * y, row + s * x + c * y) > explained

@@ -21,7 +21,7 @@ from cockpit.ros.cockpit import Cockpit
 from cockpit.ros.tools import all_tools, names
 from cockpit.ros.world.scene_reader import SceneReader
 from planar import PlanarError
-from planar_ros.node.shell import init_node
+from planar_ros.node.runner import init_node
 from supervision.command_line import option, parse
 from supervision.interruption import leave, on_signals
 from supervision.ros.node_api import is_master_online, node_names

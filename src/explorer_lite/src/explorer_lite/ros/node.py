@@ -23,14 +23,14 @@ from explorer_lite.ros.markers import frontier_markers
 from planar import OccupancyGrid, Pose2
 from planar_ros.calls.actions import ActionServer
 from planar_ros.calls.move_base import MoveBaseClient
-from planar_ros.messages.border import subscribe
+from planar_ros.lockstep import LockstepClient
 from planar_ros.messages.conversion import LaserScanArrays, OccupancyGridArrays, grid_from_msg, pose2_to_msg
 from planar_ros.messages.transforms import Transforms
-from planar_ros.node.keepsake import ParameterCheckpoint
+from planar_ros.messages.validation import subscribe
+from planar_ros.node.checkpoint import ParameterCheckpoint
 from planar_ros.node.parameters import read_settings
-from planar_ros.node.shell import run
-from planar_ros.node.waiting import ReadinessMonitor
-from planar_ros.step import LockstepClient
+from planar_ros.node.readiness import ReadinessMonitor
+from planar_ros.node.runner import run
 
 POLL_SECONDS = 0.02
 FEEDBACK_SECONDS = 1.0
@@ -50,17 +50,17 @@ class Autostart:
         self._goal = ExploreActionGoal()
         self._goal.goal.return_to_start = return_to_start
         self._goals = rospy.Publisher("explore/goal", ExploreActionGoal, queue_size=1)
-        self._keepsake = ParameterCheckpoint()
+        self._checkpoint = ParameterCheckpoint()
         self._is_sent = False
 
     @property
     def start(self) -> Optional[Pose2]:
         """Pose to return to, if it was saved by an earlier process."""
-        return None if self._keepsake.found is None else Pose2(**self._keepsake.found)
+        return None if self._checkpoint.latest is None else Pose2(**self._checkpoint.latest)
 
     def save(self, start: Pose2) -> None:
         """Save the pose to return to."""
-        self._keepsake.keep(asdict(start))
+        self._checkpoint.save(asdict(start))
 
     def send_goal(self) -> None:
         """Send the goal once the action server is connected."""
@@ -87,7 +87,7 @@ class Explore:
         self._move_base = MoveBaseClient(self._settings.global_frame)
         subscribe("map", OccupancyGridArrays, self._on_map, queue_size=1, tcp_nodelay=True)
         self._scans = subscribe("scan", LaserScanArrays, self._on_scan, queue_size=1)
-        self._move_base.cancel_at_end()
+        self._move_base.cancel_on_shutdown()
         frames = f"{self._settings.global_frame} to {self._settings.robot_base_frame}"
         self._conditions = {
             f"a map on {rospy.resolve_name('map')}": lambda: self._map is not None,

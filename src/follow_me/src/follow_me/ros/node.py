@@ -8,11 +8,11 @@ from follow_me.config import NodeSettings
 from follow_me.follower import LeaderFollower
 from planar import Pose2
 from planar_ros.calls.move_base import MoveBaseClient
+from planar_ros.lockstep import LockstepClient
 from planar_ros.messages.transforms import Transforms
 from planar_ros.node.parameters import read_settings
-from planar_ros.node.shell import run
-from planar_ros.node.waiting import ReadinessMonitor
-from planar_ros.step import LockstepClient
+from planar_ros.node.readiness import ReadinessMonitor
+from planar_ros.node.runner import run
 
 
 class FollowMe:
@@ -24,7 +24,7 @@ class FollowMe:
         self._follower = LeaderFollower(self._settings)
         self._transforms = Transforms()
         self._move_base = MoveBaseClient(self._settings.map_frame)
-        self._move_base.cancel_at_end()
+        self._move_base.cancel_on_shutdown()
         frames = (self._settings.leader_frame, self._settings.base_frame)
         ReadinessMonitor(
             {

@@ -51,7 +51,7 @@ from pick_objects import (
 from pick_objects.arrival import ArrivalEvent
 from pick_objects.errand import Order
 from planar import OccupancyGrid, Pose2, Scan, Twist2
-from planar.config.settings_file import settings_from_yaml
+from planar.config.parameters import settings_from_yaml
 from sim_bridge import RobotProfile, Simulation, SimulationSettings, StepResult
 from sim_bridge.config import LATENCY
 from sim_bridge.faults import Fault, FaultContext, FaultInjector

@@ -17,7 +17,9 @@ def score_against_world(grid: OccupancyGrid, world: World, robot: RobotProfile) 
     """Compare a map with what the laser could have measured of the world from where the robot can drive."""
     height = float(robot.laser.pose_in_base[2, 3])
     truth, fine_truth = (true_map(world, height, resolution) for resolution in (0.05, FINE_RESOLUTION))
-    return score_map(grid, truth, robot_radius=robot.radius, sight=robot.laser.sight, fine_truth=fine_truth)
+    return score_map(
+        grid, truth, robot_radius=robot.radius, sensor_range=robot.laser.sight, fine_truth=fine_truth
+    )
 
 
 def judge_map(

@@ -10,7 +10,7 @@ from rosgraph_msgs.msg import Clock
 from std_msgs.msg import String
 
 from planar_ros.calls.services import ServiceError, call_service
-from planar_ros.node.waiting import TOPIC as WAITING_TOPIC
+from planar_ros.node.readiness import WAITING_FOR_TOPIC as WAITING_TOPIC
 
 SIMULATOR = "/sim_bridge"
 # Wall-clock time after which a stopped clock is reported, and time-out of the simulator's answer [s].

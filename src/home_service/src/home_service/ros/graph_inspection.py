@@ -13,8 +13,8 @@ from tf2_msgs.msg import TFMessage
 
 from home_service.doctor.diagnosis import GraphSnapshot, NodeState, TopicState
 from planar_ros.messages.conversion import frame_name
-from planar_ros.node.shell import init_node
-from planar_ros.node.waiting import TOPIC as WAITING_TOPIC
+from planar_ros.node.readiness import WAITING_FOR_TOPIC as WAITING_TOPIC
+from planar_ros.node.runner import init_node
 from supervision.ros.node_api import answers
 from supervision.versions import versions
 

@@ -13,7 +13,7 @@ from home_service.ros.mapping import save_map
 from home_service.ros.referee import Referee
 from home_service.ros.run import Run
 from home_service.ros.run_recorder import RunRecorder
-from planar_ros.bags.bag import LASER_SCAN, BagError
+from planar_ros.bags.bag_reader import LASER_SCAN, BagError
 from planar_ros.bags.recording import Recording
 from supervision.display import Display
 from supervision.interruption import raise_when_interrupted
@@ -54,7 +54,7 @@ def replay(
     """
     display = Display()
     with Run(options, launch, Referee({}, display.print), RunRecorder({}), display) as run:
-        run.result.missing += recording.gaps
+        run.result.missing += recording.truncations
         failure = _play(run)
         if failure is None and saves_map:
             display.print(f"map saved in {save_map(run, stem)}")

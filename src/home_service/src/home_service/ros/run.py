@@ -18,8 +18,8 @@ from home_service.ros.bags.rosbag_process import RosbagProcess
 from home_service.ros.clock_monitor import ClockMonitor
 from home_service.ros.trace_recorder import TraceRecorder
 from planar import PlanarError, SettingsError
-from planar_ros.node.shell import init_node
-from planar_ros.step.step import OBSERVERS_PARAMETER
+from planar_ros.lockstep.client import OBSERVERS_PARAMETER
+from planar_ros.node.runner import init_node
 from run_report import summary, write_report
 from supervision.command_line import words
 from supervision.display import Display

@@ -7,7 +7,7 @@ from typing import Iterable, Sequence, Tuple
 
 from laboratory.results.result import RunResult
 from laboratory.scenario.scenario import Scenario
-from planar.files.atomically import write_all_atomically
+from planar.files.writing import write_all_atomically
 
 
 def export(runs: Iterable[Tuple[Scenario, Sequence[RunResult]]], folder: Path) -> None:

@@ -3,8 +3,8 @@
 from pathlib import Path
 
 from laboratory.scenario import read_scenario
-from planar_ros.node.shell import run
-from planar_ros.step import transport
+from planar_ros.lockstep import transport
+from planar_ros.node.runner import run
 from sim_bridge.config import BridgeSettings
 from sim_bridge.ros.node import Bridge
 from sim_bridge.world import World

@@ -82,7 +82,7 @@ def _read_kind(
     found = [known for known in part if known in kinds]
     if not found:
         given = next(iter(part), "")
-        raise table.complaint(key, f"needs one of {', '.join(kinds)}{hint(given, kinds)}")
+        raise table.error_at(key, f"needs one of {', '.join(kinds)}{hint(given, kinds)}")
     return kinds[found[0]](part, folder)
 
 
@@ -105,7 +105,7 @@ def _read_robot(table: Any) -> Tuple[str, Pose2]:
     try:
         robot_named(name)
     except RobotError as error:
-        raise table.complaint("profile", f"cannot be used: {error}") from None
+        raise table.error_at("profile", f"cannot be used: {error}") from None
     start = Scenario.start
     if "start" in table:
         start_table = table.table("start")
@@ -123,8 +123,8 @@ def _read_simulation(table: Table) -> SimulationSettings:
     try:
         noise = noise_named(part.text("noise", "turtlebot"))
     except SettingsError as error:
-        raise part.complaint("noise", f"cannot be used: {error}") from None
-    settings, unknown = settings_from(SimulationSettings, {**noise, **values}, where=part.place_of)
+        raise part.error_at("noise", f"cannot be used: {error}") from None
+    settings, unknown = settings_from(SimulationSettings, {**noise, **values}, where=part.location_of)
     if unknown:
         part.allow_only("noise", *(key for key in part if key not in unknown))
     return settings
@@ -136,7 +136,7 @@ def _read_planner(planner: Table) -> str:
         if name != OFFICIAL:
             check_local_planner(name)
     except SettingsError as error:
-        raise planner.complaint("name", f"cannot be used: {error}") from None
+        raise planner.error_at("name", f"cannot be used: {error}") from None
     return name
 
 
@@ -150,9 +150,9 @@ def _read_parameters(planner: Table, robot: str) -> Mapping[str, Any]:
         EpisodeConditions(name, values).navigation(navigation_config(robot))
         _, warnings = settings_from_parameters({**values, **({"base_local_planner": name} if name else {})})
     except SettingsError as error:
-        raise planner.complaint("parameters", f"cannot be used: {error}") from None
+        raise planner.error_at("parameters", f"cannot be used: {error}") from None
     if warnings:
-        raise planner.complaint("parameters", f"cannot be used: {warnings[0]}")
+        raise planner.error_at("parameters", f"cannot be used: {warnings[0]}")
     return values
 
 
@@ -170,4 +170,4 @@ def _read_seeds(table: Table) -> Tuple[int, ...]:
     try:
         return parse_seeds(table.text("seeds"))
     except SettingsError as error:
-        raise table.complaint("seeds", f"cannot be used: {error}") from None
+        raise table.error_at("seeds", f"cannot be used: {error}") from None

@@ -10,7 +10,7 @@ from scipy.sparse.csgraph import dijkstra
 
 from planar import FREE, OccupancyGrid, Pose2
 from planar.geometry.distance_field import distance_field
-from planar.geometry.ways import grid_graph
+from planar.geometry.grid_graph import grid_graph
 
 # Metres from a robot's middle to what is solid, on all ways of generated buildings.
 PASSAGE_CLEARANCE = 0.35

@@ -84,5 +84,5 @@ def read_barn(table: Table, folder: Path) -> BarnFolder:
     try:
         source.pairs()
     except SettingsError as error:
-        raise table.complaint("barn", f"cannot be used: {error}") from None
+        raise table.error_at("barn", f"cannot be used: {error}") from None
     return source

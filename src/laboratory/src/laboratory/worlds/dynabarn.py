@@ -63,7 +63,7 @@ def _rows(table: Table, key: str, length: int) -> np.ndarray:
     except (TypeError, ValueError):
         array = np.empty((0, length))
     if not len(array) or len(array) != len(rows) or not np.isfinite(array).all():
-        raise table.complaint(key, f"must be lists of {length} numbers")
+        raise table.error_at(key, f"must be lists of {length} numbers")
     return array
 
 
@@ -74,5 +74,5 @@ def read_dynabarn(table: Table, folder: Path) -> DynabarnFolder:
     try:
         source.files()
     except SettingsError as error:
-        raise table.complaint("dynabarn", f"cannot be used: {error}") from None
+        raise table.error_at("dynabarn", f"cannot be used: {error}") from None
     return source

@@ -17,8 +17,8 @@ from map_lite.config import SaverSettings
 from planar import UNKNOWN, PlanarError, SettingsError, save_map
 from planar.config.parameters import parameters_of
 from planar_ros.messages.conversion import OccupancyGridArrays, grid_from_msg
-from planar_ros.node.shell import fail, init_node, shut_down_on_signals
-from planar_ros.node.waiting import ReadinessMonitor
+from planar_ros.node.readiness import ReadinessMonitor
+from planar_ros.node.runner import fail, init_node, shut_down_on_signals
 from supervision.interruption import INTERRUPTED
 
 

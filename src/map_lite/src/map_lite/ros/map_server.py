@@ -18,7 +18,7 @@ from planar.maps.map_file import MapDescriptionError, MapImageError, MapMissingE
 from planar_ros.calls.load_map import LoadMapArrays, LoadMapResult, advertise_services
 from planar_ros.messages.conversion import GetMapArrays, OccupancyGridArrays, grid_to_msg
 from planar_ros.node.parameters import read_settings
-from planar_ros.node.shell import run
+from planar_ros.node.runner import run
 
 RESULTS = {
     MapMissingError: LoadMapResult.MAP_DOES_NOT_EXIST,

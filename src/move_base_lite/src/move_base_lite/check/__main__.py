@@ -3,7 +3,7 @@
 import sys
 
 from move_base_lite.check import KITS
-from planar.contract_check import run_checks
+from planar.plugin_check import run_checks
 
 if __name__ == "__main__":
     sys.exit(run_checks("move_base_lite", KITS))

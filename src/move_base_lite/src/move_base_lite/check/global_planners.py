@@ -8,7 +8,7 @@ from move_base_lite.check.maps import PICTURES, CheckMap, check_map
 from move_base_lite.costmap import INSCRIBED
 from move_base_lite.errors import GoalBlocked, NoPath, OutOfMap
 from move_base_lite.plugin import Plugin
-from planar.contract_check import expect, expect_error
+from planar.plugin_check import expect, expect_error
 
 # Maximum distance of consecutive points [cells].
 LONGEST_STEP = 3.0

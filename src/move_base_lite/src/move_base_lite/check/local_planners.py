@@ -11,7 +11,7 @@ from move_base_lite.control import Plan
 from move_base_lite.errors import ControlError, ControlPluginFailed
 from move_base_lite.plugin import Plugin
 from planar import Pose2, Twist2
-from planar.contract_check import expect, expect_error
+from planar.plugin_check import expect, expect_error
 
 SPEEDS = Twist2(0.5, 1.0)
 

@@ -6,7 +6,7 @@ from move_base_lite.check.maps import PERIOD, PICTURES, CheckMap, check_map, mov
 from move_base_lite.plugin import Plugin
 from move_base_lite.recovery import RecoveryContext
 from planar import Pose2, Twist2
-from planar.contract_check import CheckFailed, expect
+from planar.plugin_check import CheckFailed, expect
 
 MAX_DURATION = 60.0
 

@@ -67,10 +67,10 @@ class GuardedLayer(Layer):
 class LayerContract(PluginContract):
     """Contract of layers; it accepts classes from before ``note`` was renamed to ``add_observation``."""
 
-    def missing(self, found: Any) -> List[str]:
+    def violations(self, found: Any) -> List[str]:
         if isinstance(found, type) and not issubclass(found, Layer):
             accept_note(found)
-        return super().missing(found)
+        return super().violations(found)
 
 
 LAYERS: Registry[Layer] = Registry(

@@ -126,7 +126,7 @@ def _zone(name: str, table: Table) -> NavigationZone:
     table.allow_only("kind", "corners", "enabled", *(["max_speed"] if kind == SPEED else []))
     max_speed = table.number("max_speed") if kind == SPEED else math.inf
     if max_speed <= 0.0:
-        raise table.complaint("max_speed", f"must be positive, got {max_speed:g}")
+        raise table.error_at("max_speed", f"must be positive, got {max_speed:g}")
     return NavigationZone(name, kind, _corners(table), max_speed, table.flag("enabled", True))
 
 
@@ -137,5 +137,5 @@ def _corners(table: Table) -> Tuple[Tuple[float, float], ...]:
     except (TypeError, ValueError, OverflowError):
         corners = ()
     if len(corners) < 3 or not np.isfinite(corners).all():
-        raise table.complaint("corners", f"must be at least 3 points [x, y], got {value!r}")
+        raise table.error_at("corners", f"must be at least 3 points [x, y], got {value!r}")
     return corners

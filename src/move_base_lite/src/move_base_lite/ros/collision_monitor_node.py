@@ -12,12 +12,12 @@ from move_base_lite.collision_monitor import STOPPED, CollisionMonitor, LimitedC
 from move_base_lite.parameters.costmaps import parse_footprint
 from planar import Twist2
 from planar.config.settings import settings_from
-from planar_ros.messages.border import subscribe
 from planar_ros.messages.conversion import LaserScanArrays, frame_name, scan_from_msg
 from planar_ros.messages.transforms import Transforms
-from planar_ros.node.last_words import publish_on_shutdown
+from planar_ros.messages.validation import subscribe
+from planar_ros.node.flush import publish_on_shutdown
 from planar_ros.node.parameters import parameters_below
-from planar_ros.node.shell import run
+from planar_ros.node.runner import run
 
 WARN_SECONDS = 5.0
 SILENT = "silent"

@@ -23,13 +23,13 @@ from move_base_lite.ros.topics.potential import PotentialTopic
 from move_base_lite.ros.topics.zones import ZoneTopics
 from move_base_lite.warmup import warm_up
 from planar import OccupancyGrid, Pose2, SettingsError, Twist2
-from planar_ros.messages.border import subscribe
+from planar_ros.lockstep import LockstepClient, has_synchronized_publisher
 from planar_ros.messages.conversion import OccupancyGridArrays, frame_name, grid_from_msg
 from planar_ros.messages.transforms import Transforms
+from planar_ros.messages.validation import subscribe
 from planar_ros.node.parameters import parameters_below
-from planar_ros.node.shell import run
-from planar_ros.node.waiting import ReadinessMonitor
-from planar_ros.step import LockstepClient, has_synchronised_publisher
+from planar_ros.node.readiness import ReadinessMonitor
+from planar_ros.node.runner import run
 
 WARN_SECONDS = 5.0
 TIME_JUMP_TEXT = "Aborting on the goal because time has jumped back"
@@ -103,7 +103,7 @@ class MoveBaseNode:
     def _has_map(self) -> bool:
         """Whether there is a map, or none is expected from a synchronised node."""
         is_there = self._new_map is not None or self._navigator is not None
-        return is_there or has_synchronised_publisher(self._maps)
+        return is_there or has_synchronized_publisher(self._maps)
 
     def _period(self) -> float:
         return 1.0 / self._settings.move_base.controller_frequency

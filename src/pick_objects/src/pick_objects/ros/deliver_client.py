@@ -15,7 +15,7 @@ from home_service_msgs.msg import DeliverAction, DeliverGoal, DeliveryState
 
 from pick_objects.mission_file import TEXT_SOURCE
 from planar_ros.calls.actions import goal_is_over, server_is_ready
-from planar_ros.node.shell import init_node
+from planar_ros.node.runner import init_node
 from supervision.interruption import on_signals
 
 POLL_SECONDS, FEEDBACK_SECONDS, CANCEL_SECONDS = 0.1, 2.0, 10.0

@@ -28,7 +28,7 @@ class NavigationClient:
 
     def __init__(self, frame_id: str):
         self.move_base = MoveBaseClient(frame_id)
-        self.move_base.cancel_at_end()
+        self.move_base.cancel_on_shutdown()
         self._order: Optional[DriveToPlace] = None
         self._arrival = ArrivalCheck(Pose2())
         self._fit, self._fit_at = RecentScanFit(), rospy.Time(0)

@@ -21,13 +21,13 @@ from pick_objects.ros.navigation_client import NavigationClient
 from planar import OccupancyGrid
 from planar.driving import FinishTask
 from planar.maps.places import NamedPlace, load_pickup_and_dropoff, load_places, unreachable_reason
-from planar_ros.messages.border import subscribe
+from planar_ros.lockstep import LockstepClient
 from planar_ros.messages.conversion import OccupancyGridArrays, grid_from_msg
-from planar_ros.node.keepsake import ParameterCheckpoint
+from planar_ros.messages.validation import subscribe
+from planar_ros.node.checkpoint import ParameterCheckpoint
 from planar_ros.node.parameters import read_settings
-from planar_ros.node.shell import fail, run
-from planar_ros.node.waiting import NodeReadiness, ReadinessMonitor
-from planar_ros.step import LockstepClient
+from planar_ros.node.readiness import NodeReadiness, ReadinessMonitor
+from planar_ros.node.runner import fail, run
 
 POLL_SECONDS = 0.02
 
@@ -110,7 +110,7 @@ class PickObjectsNode:
                 order = self._errand.advance(rospy.get_time(), event)
                 self._topics.publish(self._errand)
                 if self._checkpoint is not None:
-                    self._checkpoint.keep(checkpoint_of(self._errand))
+                    self._checkpoint.save(checkpoint_of(self._errand))
                 if isinstance(order, FinishTask):
                     self._navigation.move_base.cancel_all()
                     return order
@@ -126,7 +126,7 @@ class PickObjectsNode:
 
     def _errand_for(self, mission: Mission) -> Errand:
         """Resume the errand from a checkpoint, if there is one."""
-        found = None if self._checkpoint is None else self._checkpoint.found
+        found = None if self._checkpoint is None else self._checkpoint.latest
         errand = None if found is None else resume_errand(mission, found)
         return errand or Errand(mission)
 

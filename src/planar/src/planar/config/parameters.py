@@ -1,6 +1,6 @@
 """Parameters: fields of settings that know their official name, unit, bounds and meaning.
 
-They are said once, in the dataclass; lists of them are made from it (planar.config.listing)::
+They are said once, in the dataclass; lists of them are made from it (planar.config.config_file)::
 
     @dataclass(frozen=True)
     class TeaSettings:
@@ -13,9 +13,11 @@ They are said once, in the dataclass; lists of them are made from it (planar.con
 
 import dataclasses
 import math
-from typing import Any, Dict, NamedTuple, Sequence, Tuple, Union
+from pathlib import Path
+from typing import Any, Dict, List, NamedTuple, Sequence, Tuple, Type, TypeVar, Union
 
-from planar.config.settings import check
+from planar.config.settings import check, settings_from
+from planar.config.yaml_table import read_table
 from planar.deprecation import deprecated_names
 
 Dynamic = Union[None, bool, float, Tuple[float, float]]
@@ -27,17 +29,17 @@ class Interval(NamedTuple):
     low: float = -math.inf
     high: float = math.inf
     words: str = ""
-    without_low: bool = False
+    exclusive_low: bool = False
 
     def __contains__(self, value: object) -> bool:
         assert isinstance(value, (int, float))
-        return self.low <= value <= self.high and not (self.without_low and value == self.low)
+        return self.low <= value <= self.high and not (self.exclusive_low and value == self.low)
 
     def __str__(self) -> str:
         return self.words or f"between {self.low:g} and {self.high:g}"
 
 
-POSITIVE = Interval(0.0, words="positive", without_low=True)
+POSITIVE = Interval(0.0, words="positive", exclusive_low=True)
 ZERO_OR_MORE = Interval(0.0, words="zero or more")
 
 
@@ -174,3 +176,15 @@ def _said_of(kind: type, field: str):
 
 
 __getattr__ = deprecated_names(__name__, {"Bounds": "Interval"})
+
+
+T = TypeVar("T")
+
+
+def settings_from_yaml(kind: Type[T], path: Path) -> Tuple[T, List[str]]:
+    """The dataclass ``kind`` (fields made by ``parameter``) filled from a file; the names unknown to it.
+
+    Raises SettingsError.
+    """
+    table = read_table(path)
+    return settings_from(kind, table.values(), official_names(kind), table.location_of)

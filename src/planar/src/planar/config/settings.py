@@ -16,7 +16,7 @@ def settings_from(
     values: Mapping[str, Any],
     names: Mapping[str, str] = {},
     where: Union[str, Callable[[str], str]] = "",
-    complain: Optional[Callable[[str], None]] = None,
+    on_error: Optional[Callable[[str], None]] = None,
 ) -> Tuple[T, List[str]]:
     """The dataclass ``kind`` filled from ``values``; what ``values`` leaves out keeps its default.
 
@@ -28,7 +28,7 @@ def settings_from(
     Old names of parameters are accepted with a FutureWarning if ``kind.DEPRECATED_PARAMETERS`` maps them to
     the fields that replace them.
     """
-    place_of = where if callable(where) else lambda _name: where
+    location_of = where if callable(where) else lambda _name: where
     types = typing.get_type_hints(kind)
     fields = {field.name for field in dataclasses.fields(kind) if field.init}  # type: ignore[arg-type]
     renamed = set(names.values())
@@ -41,14 +41,14 @@ def settings_from(
             unknown.append(name)
             continue
         if name in deprecated:
-            text = f"{place_of(name)}{name} is deprecated; use {deprecated[name]}"
+            text = f"{location_of(name)}{name} is deprecated; use {deprecated[name]}"
             warnings.warn(text, FutureWarning, stacklevel=2)
         try:
-            known[table[name]] = _converted(types[table[name]], value, place_of(name) + name)
+            known[table[name]] = _converted(types[table[name]], value, location_of(name) + name)
         except SettingsError as error:
-            if complain is None:
+            if on_error is None:
                 raise
-            complain(str(error))
+            on_error(str(error))
     try:
         return kind(**known), unknown
     except SettingsError as error:
@@ -56,7 +56,7 @@ def settings_from(
         text = str(error)
         first = text.split(" ", 1)[0]
         name = official.get(first, first)
-        raise SettingsError(place_of(name) + text.replace(first, name, 1)) from None
+        raise SettingsError(location_of(name) + text.replace(first, name, 1)) from None
 
 
 def check(condition: bool, name: str, requirement: str, value: Any) -> None:

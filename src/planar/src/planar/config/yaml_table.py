@@ -75,10 +75,10 @@ class _Document:
     def __init__(self, source: str, loader: yaml.SafeLoader, error: Type[PlanarError]):
         self.source, self.loader, self.error = source, loader, error
 
-    def complaint(self, node: yaml.Node, text: str) -> PlanarError:
-        return self.error(self.place_of(node) + text)
+    def error_at(self, node: yaml.Node, text: str) -> PlanarError:
+        return self.error(self.location_of(node) + text)
 
-    def place_of(self, node: yaml.Node) -> str:
+    def location_of(self, node: yaml.Node) -> str:
         return f"{self.source}:{node.start_mark.line + 1}: "
 
 
@@ -96,7 +96,7 @@ class Table:
         try:
             document.loader.flatten_mapping(node)
         except yaml.YAMLError:
-            raise document.complaint(node, "'<<' merges no table") from None
+            raise document.error_at(node, "'<<' merges no table") from None
         for key, value in node.value:
             self._entries[key.value] = (key, value)
 
@@ -114,7 +114,7 @@ class Table:
             return self._document.loader.construct_object(self._entries[key][1], deep=True)
         except (yaml.YAMLError, ValueError, OverflowError, RecursionError) as problem:
             what = getattr(problem, "problem", None) or problem
-            raise self.complaint(key, f"cannot be understood ({what})") from None
+            raise self.error_at(key, f"cannot be understood ({what})") from None
 
     def values(self) -> Dict[str, Any]:
         """The whole table as plain Python objects."""
@@ -128,27 +128,27 @@ class Table:
         """A list of finite numbers, as many as ``names`` names, e.g. "x, y, yaw"."""
         values = self._needed(key)
         if not isinstance(values, list) or len(values) != len(names.split(", ")):
-            raise self.complaint(key, f"must be [{names}], got {values!r}")
+            raise self.error_at(key, f"must be [{names}], got {values!r}")
         return tuple(self._as_number(key, value) for value in values)
 
     def count(self, key: str, default: int = _REQUIRED) -> int:
         """A whole number from 1."""
         value = self._needed(key, default)
         if isinstance(value, bool) or not isinstance(value, int) or value < 1:
-            raise self.complaint(key, f"must be a whole number from 1, got {value!r}")
+            raise self.error_at(key, f"must be a whole number from 1, got {value!r}")
         return value
 
     def flag(self, key: str, default: bool = _REQUIRED) -> bool:
         value = self._needed(key, default)
         if not isinstance(value, bool):
-            raise self.complaint(key, f"must be true or false, got {value!r}")
+            raise self.error_at(key, f"must be true or false, got {value!r}")
         return value
 
     def text(self, key: str, default: str = _REQUIRED) -> str:
         """A name or other text that is not empty; a number counts as a text."""
         value = self._needed(key, default)
         if isinstance(value, (bool, dict, list)) or not str(value).strip():
-            raise self.complaint(key, f"must be a text, got {value!r}")
+            raise self.error_at(key, f"must be a text, got {value!r}")
         return str(value)
 
     def path(self, key: str, folder: Path) -> Path:
@@ -157,7 +157,7 @@ class Table:
             path = (folder / Path(self.text(key)).expanduser()).resolve()
             path.exists()
         except (OSError, ValueError, RuntimeError) as problem:
-            raise self.complaint(key, f"can be no file or folder ({problem})") from None
+            raise self.error_at(key, f"can be no file or folder ({problem})") from None
         return path
 
     def texts(self, key: str) -> List[str]:
@@ -165,13 +165,13 @@ class Table:
         values = self.value(key) or []
         values = values if isinstance(values, list) else [values]
         if any(isinstance(value, (bool, dict, list)) or value is None for value in values):
-            raise self.complaint(key, f"must be a list of texts, got {values!r}")
+            raise self.error_at(key, f"must be a list of texts, got {values!r}")
         return [str(value) for value in values]
 
     def choice(self, key: str, choices: Iterable[str], default: str = _REQUIRED) -> str:
         value = self._needed(key, default)
         if not isinstance(value, str) or value not in choices:
-            raise self.complaint(key, f"must be one of {', '.join(choices)}, got {value!r}")
+            raise self.error_at(key, f"must be one of {', '.join(choices)}, got {value!r}")
         return value
 
     def table(self, key: str) -> "Table":
@@ -179,18 +179,18 @@ class Table:
         self._needed(key)
         node = self._entries[key][1]
         if not isinstance(node, yaml.MappingNode):
-            raise self.complaint(key, f"must be a table of keys and values, got {self.value(key)!r}")
+            raise self.error_at(key, f"must be a table of keys and values, got {self.value(key)!r}")
         return Table(self._document, node, self._full(key))
 
     def tables(self, key: str) -> List["Table"]:
         """The list of tables below ``key``; none if the key is missing."""
         node = self._entries[key][1] if key in self else yaml.SequenceNode("", [])
         if not isinstance(node, yaml.SequenceNode):
-            raise self.complaint(key, "must be a list of tables")
+            raise self.error_at(key, "must be a list of tables")
         for number, item in enumerate(node.value, 1):
             if not isinstance(item, yaml.MappingNode):
                 text = f"{self._full(key)}[{number}] must be a table of keys and values"
-                raise self._document.complaint(item, text)
+                raise self._document.error_at(item, text)
         return [
             Table(self._document, item, f"{self._full(key)}[{number}]")
             for number, item in enumerate(node.value, 1)
@@ -200,20 +200,20 @@ class Table:
         """Complains of the first key that is none of ``known``."""
         for key in self:
             if key not in known:
-                raise self.complaint(key, f"is not known{hint_or_choices(key, known)}")
+                raise self.error_at(key, f"is not known{hint_or_choices(key, known)}")
 
     def check(self, condition: bool, key: str, requirement: str) -> None:
         """Complains that ``key`` must be ``requirement`` unless ``condition`` holds."""
         if not condition:
-            raise self.complaint(key, f"must be {requirement}, got {self.value(key)!r}")
+            raise self.error_at(key, f"must be {requirement}, got {self.value(key)!r}")
 
-    def complaint(self, key: str, text: str) -> PlanarError:
+    def error_at(self, key: str, text: str) -> PlanarError:
         """The error "<file>:<line>: <key> <text>"; the line is the table's own if it lacks the key."""
-        return self._document.complaint(self._node_of(key), f"{self._full(key)} {text}")
+        return self._document.error_at(self._node_of(key), f"{self._full(key)} {text}")
 
-    def place_of(self, key: str) -> str:
+    def location_of(self, key: str) -> str:
         """What stands before ``key`` in a complaint: file, line, and the keys that lead to it."""
-        return self._document.place_of(self._node_of(key)) + self._full("")
+        return self._document.location_of(self._node_of(key)) + self._full("")
 
     def _node_of(self, key: str) -> yaml.Node:
         return self._entries[key][0] if key in self._entries else self._node
@@ -226,7 +226,7 @@ class Table:
         if value is not None:
             return value
         if default is _REQUIRED:
-            raise self.complaint(key, "is missing")
+            raise self.error_at(key, "is missing")
         return default
 
     def _as_number(self, key: str, value: Any) -> float:
@@ -235,7 +235,7 @@ class Table:
         except (TypeError, ValueError, OverflowError):
             number = math.nan
         if isinstance(value, bool) or not math.isfinite(number):
-            raise self.complaint(key, f"must be a number, got {value!r}")
+            raise self.error_at(key, f"must be a number, got {value!r}")
         return number
 
 
@@ -255,7 +255,7 @@ def _check_keys(document: _Document, root: yaml.Node) -> None:
         for key, value in node.value:
             waiting.append(value)
             if not isinstance(key, yaml.ScalarNode):
-                raise document.complaint(key, "a key must be a plain text")
+                raise document.error_at(key, "a key must be a plain text")
             if key.value in seen:
-                raise document.complaint(key, f"{key.value} is given twice, first in line {seen[key.value]}")
+                raise document.error_at(key, f"{key.value} is given twice, first in line {seen[key.value]}")
             seen[key.value] = key.start_mark.line + 1

@@ -82,7 +82,7 @@ class BandedGrid:
     origin: Pose2
     bands: Iterable[np.ndarray]
 
-    def joined(self) -> OccupancyGrid:
+    def assemble(self) -> OccupancyGrid:
         """The whole grid."""
         cells, end = np.empty((self.rows, self.cols), dtype=np.int8), self.rows
         for band in self.bands:

@@ -8,8 +8,8 @@ import numpy as np
 
 from planar.config.yaml_table import read_table
 from planar.errors import PlanarError
-from planar.files.atomically import write_all_atomically
 from planar.files.reading import read_bytes
+from planar.files.writing import write_all_atomically
 from planar.geometry.grid import FREE, OCCUPIED, UNKNOWN, BandedGrid, OccupancyGrid
 from planar.geometry.limits import MAX_RESOLUTION, MIN_RESOLUTION
 from planar.geometry.pose import Pose2

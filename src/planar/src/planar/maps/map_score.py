@@ -37,7 +37,7 @@ def score_map(
     truth_in_map: Pose2 = Pose2(),
     tolerance: float = 0.10,
     robot_radius: float = 0.18,
-    sight: float = 10.0,
+    sensor_range: float = 10.0,
     fine_truth: Optional[OccupancyGrid] = None,
 ) -> MapScore:
     """Scores a map against the true one, of any extent and resolution each.
@@ -50,7 +50,7 @@ def score_map(
     """
     mapped_xy = grid.points_of(np.argwhere(grid.cells == OCCUPIED))
     true_xy = truth_in_map.transform_points(truth.points_of(np.argwhere(truth.cells == OCCUPIED)))
-    visible_cells = visible_walls(truth, start_in_truth, robot_radius, sight)
+    visible_cells = visible_walls(truth, start_in_truth, robot_radius, sensor_range)
     visible_xy = truth_in_map.transform_points(truth.points_of(visible_cells))
     if len(mapped_xy) == 0:
         return MapScore(0.0, 0.0, 0)
@@ -61,7 +61,7 @@ def score_map(
     )
 
 
-def visible_walls(truth: OccupancyGrid, start: Pose2, robot_radius: float, sight: float) -> np.ndarray:
+def visible_walls(truth: OccupancyGrid, start: Pose2, robot_radius: float, sensor_range: float) -> np.ndarray:
     """Occupied cells (N, 2) as (row, col) that can be seen from where a robot can drive to from ``start``."""
     clearance = distance_field(truth.cells == OCCUPIED, truth.resolution)
     regions, _ = label((truth.cells == FREE) & (clearance > robot_radius))
@@ -73,10 +73,10 @@ def visible_walls(truth: OccupancyGrid, start: Pose2, robot_radius: float, sight
     viewpoints = np.argwhere(regions[::step, ::step] == region) * step
     poses = np.column_stack((truth.points_of(viewpoints), np.zeros(len(viewpoints))))
     angles = np.arange(RAYS) * (2.0 * np.pi / RAYS)
-    ranges = cast_rays_from_many(truth, poses, angles, sight)
+    ranges = cast_rays_from_many(truth, poses, angles, sensor_range)
     depths = ranges + 1e-3 * truth.resolution
     ends_xy = poses[:, None, :2] + depths[:, :, None] * np.column_stack((np.cos(angles), np.sin(angles)))
-    cells = np.unique(truth.cells_of(ends_xy[ranges < sight]), axis=0)
+    cells = np.unique(truth.cells_of(ends_xy[ranges < sensor_range]), axis=0)
     cells = cells[truth.contains(cells)]
     return cells[truth.cells[tuple(cells.T)] == OCCUPIED]
 

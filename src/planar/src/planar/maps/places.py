@@ -31,7 +31,7 @@ class NamedPlace:
         """Metres to the nearest of its poses."""
         return min(pose.distance_to(robot_in_map) for pose in self.poses)
 
-    def holds(self, robot_in_map: Pose2) -> bool:
+    def contains(self, robot_in_map: Pose2) -> bool:
         return self.distance_to(robot_in_map) <= self.radius
 
 

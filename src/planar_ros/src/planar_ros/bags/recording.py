@@ -4,7 +4,7 @@ import math
 from pathlib import Path
 from typing import Any, Dict, Iterable, Iterator, List, Sequence, Set, Tuple
 
-from planar_ros.bags.bag import BagError, BagReader, RecordedMessage
+from planar_ros.bags.bag_reader import BagError, BagReader, RecordedMessage
 
 
 class Recording:
@@ -16,7 +16,7 @@ class Recording:
     def __init__(self, paths: Sequence[Path]):
         self.paths = bag_paths(paths)
         bags = [BagReader(path) for path in self.paths]
-        self.gaps: List[str] = [f"{bag.path.name}: {bag.gap}" for bag in bags if bag.gap]
+        self.truncations: List[str] = [f"{bag.path.name}: {bag.truncation}" for bag in bags if bag.truncation]
         self._bags = sorted((bag for bag in bags if not bag.is_empty), key=lambda bag: bag.start)
         if not self._bags:
             raise BagError(f"{self.paths[0]}: there is no message in it")
@@ -28,9 +28,9 @@ class Recording:
         return {topic: kind for bag in self._bags for topic, kind in bag.types.items()}
 
     @property
-    def foreign(self) -> Set[str]:
+    def unavailable_topics(self) -> Set[str]:
         """The topics whose types are not installed, or otherwise than they were recorded."""
-        return set().union(*(bag.foreign for bag in self._bags))
+        return set().union(*(bag.unavailable_topics for bag in self._bags))
 
     def topics_of(self, *types: str) -> List[str]:
         return sorted(topic for topic, kind in self.types.items() if kind in types)

@@ -9,10 +9,10 @@ from typing import Callable, Deque, Iterator, Set, Union
 import numpy as np
 
 from planar import PlanarError, Pose2, Scan
-from planar_ros.bags.bag import TF, TF_STATIC, BagError, BagReader, RecordedMessage, absolute_name
+from planar_ros.bags.bag_reader import TF, TF_STATIC, BagError, BagReader, RecordedMessage, absolute_name
 from planar_ros.bags.transform_log import TransformLog
-from planar_ros.messages.border import is_stamp
 from planar_ros.messages.conversion import frame_name, pose2_from_msg, scan_from_msg
+from planar_ros.messages.validation import is_stamp
 
 # Odometry may lag behind or start after a scan by this much, seconds of the bag's time.
 _PATIENCE = 2.0
@@ -88,8 +88,8 @@ class ScanLog:
                 yield from self._with_odometry(waiting.popleft())
         for scan in waiting:
             yield from self._with_odometry(scan)
-        if self._bag.gap:
-            raise BagError(f"{self.path}: {self._bag.gap}")
+        if self._bag.truncation:
+            raise BagError(f"{self.path}: {self._bag.truncation}")
 
     def _add_transforms(self, played: RecordedMessage) -> None:
         for pair in self._transforms.add(played.message, is_static=played.topic == TF_STATIC):

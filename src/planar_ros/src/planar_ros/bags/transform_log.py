@@ -9,8 +9,8 @@ from geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
 from std_msgs.msg import Header
 
 from planar import Pose2
-from planar_ros.messages.border import MessageError, is_stamp
 from planar_ros.messages.conversion import frame_name, pose2_of
+from planar_ros.messages.validation import MessageError, is_stamp
 
 # Static transforms that differ by less, metres or parts of a quaternion, are the same.
 _ROUNDING = 1e-4

@@ -5,8 +5,8 @@ from typing import Any, List, Sequence
 import actionlib
 import rospy
 
-from planar_ros.node.last_words import flush_and_close
-from planar_ros.step import LockstepClient
+from planar_ros.lockstep import LockstepClient
+from planar_ros.node.flush import flush_and_close
 
 # Goals that have ended are told of for a while, but of no more than so many, and no more than so many are
 # kept: each goal that comes is looked up among them.
@@ -29,7 +29,9 @@ class ActionServer(actionlib.SimpleActionServer):
     def start(self) -> None:
         server, step = self.action_server, LockstepClient.of_node()
         self._publish_status, self._is_to_tell = server.publish_status, False
-        if step.is_on:  # clients connect between this moment and the next, and either all hear it or none
+        if (
+            step.is_synchronized
+        ):  # clients connect between this moment and the next, and either all hear it or none
             server.publish_status = lambda: None
         super().start()
         server.publish_status = self._tell_soon
@@ -60,7 +62,7 @@ class ActionServer(actionlib.SimpleActionServer):
                 server.status_list[:] = prune_ended(server.status_list)
             if not self._is_to_tell:
                 self._is_to_tell = True
-                LockstepClient.of_node().soon(self._tell)
+                LockstepClient.of_node().defer(self._tell)
 
     def _tell(self) -> None:
         server = self.action_server

@@ -16,7 +16,7 @@ from planar.driving import DriveOutcome
 from planar_ros.calls.actions import goal_is_lost, goal_is_over, server_connection, server_is_ready
 from planar_ros.calls.services import call_service
 from planar_ros.messages.conversion import pose2_from_msg, pose2_to_msg
-from planar_ros.node.last_words import flush_and_close
+from planar_ros.node.flush import flush_and_close
 
 PLAN_SECONDS = 5.0
 POLL_SECONDS = 0.02
@@ -98,7 +98,7 @@ class MoveBaseClient:
         self._is_driving = False
         self._client.cancel_all_goals()
 
-    def cancel_at_end(self) -> None:
+    def cancel_on_shutdown(self) -> None:
         """Has the goal given up when the node ends, and move_base hear of it."""
 
         def cancel() -> None:

@@ -6,7 +6,7 @@ import threading
 import rospy
 
 from planar import PlanarError
-from planar_ros.step import LockstepClient
+from planar_ros.lockstep import LockstepClient
 
 
 class ServiceError(PlanarError):
@@ -16,7 +16,7 @@ class ServiceError(PlanarError):
 def call_service(name: str, kind, request, seconds: float):
     """The response of the service; waits at most ``seconds`` of wall-clock time. Raises ServiceError."""
     answers: queue.Queue = queue.Queue()
-    step = LockstepClient.present()
+    step = LockstepClient.existing()
     headers = {} if step is None else step.headers()
 
     def call():

@@ -2,6 +2,7 @@
 
 import math
 import struct
+from typing import Sequence
 
 import numpy as np
 import rospy
@@ -9,11 +10,12 @@ from geometry_msgs.msg import Point, Pose, PoseArray, Quaternion, TransformStamp
 from nav_msgs.msg import OccupancyGrid as OccupancyGridMsg
 from nav_msgs.srv import GetMap, GetMapResponse, SetMap, SetMapRequest
 from rospy.numpy_msg import numpy_msg
-from sensor_msgs.msg import LaserScan
+from sensor_msgs.msg import LaserScan, PointCloud2, PointField
+from std_msgs.msg import Header
 
 from planar import OccupancyGrid, Pose2, Scan, Twist2
 from planar.geometry.limits import MAX_COORDINATE
-from planar_ros.messages.border import MessageError, check_twist
+from planar_ros.messages.validation import MessageError, check_twist
 
 # Subscribed to with these types, `ranges` and `data` arrive as numpy arrays instead of tuples.
 LaserScanArrays = numpy_msg(LaserScan)
@@ -140,3 +142,24 @@ class PosesMsg(PoseArray):
         self.header.serialize(buff)
         buff.write(struct.pack("<I", len(rows)))
         buff.write(rows.tobytes())
+
+
+FLOAT_BYTES = 4
+
+
+def cloud_msg(
+    columns: Sequence[np.ndarray], names: Sequence[str], stamp: rospy.Time, frame: str
+) -> PointCloud2:
+    """A cloud of points from the column (N,) of each of its fields, all float32."""
+    points = np.column_stack(columns).astype("<f4")
+    count, point_step = len(points), FLOAT_BYTES * len(names)
+    return PointCloud2(
+        header=Header(stamp=stamp, frame_id=frame),
+        height=1,
+        width=count,
+        fields=[PointField(name, FLOAT_BYTES * i, PointField.FLOAT32, 1) for i, name in enumerate(names)],
+        point_step=point_step,
+        row_step=count * point_step,
+        data=points.tobytes(),
+        is_dense=True,
+    )

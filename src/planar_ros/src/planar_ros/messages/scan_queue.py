@@ -8,9 +8,9 @@ import rospy
 from tf2_msgs.msg import TFMessage
 
 from planar import PlanarError, Pose2, Scan
+from planar_ros.lockstep import LockstepClient
 from planar_ros.messages.conversion import LaserScanArrays, frame_name, scan_from_msg
 from planar_ros.messages.transforms import JUMP_BACK_SECONDS, Transforms
-from planar_ros.step import LockstepClient
 
 
 class ScanQueue:
@@ -44,13 +44,13 @@ class ScanQueue:
         self._has_news = threading.Condition()
         self._news = 0
         self._step = LockstepClient.of_node()
-        self._step.at_moments(self._deal_with_waiting)
+        self._step.on_instant(self._deal_with_waiting)
         rospy.on_shutdown(self._wake)
         threading.Thread(target=self._work, daemon=True).start()
         # Subscribed to after the listener, whose callback has then already taken in the same message.
         rospy.Subscriber("/tf", TFMessage, self._on_transforms, tcp_nodelay=True)
         rospy.Subscriber("/tf_static", TFMessage, self._on_transforms)
-        self._heard = rospy.Subscriber(topic, LaserScanArrays, self.take, queue_size=size, tcp_nodelay=True)
+        self._heard = rospy.Subscriber(topic, LaserScanArrays, self.add, queue_size=size, tcp_nodelay=True)
 
     @property
     def has_received(self) -> bool:
@@ -62,13 +62,13 @@ class ScanQueue:
         """How many scans have not been dealt with yet."""
         return len(self._waiting)
 
-    def use_frames(self, odom_frame: str, base_frame: str) -> None:
+    def set_frames(self, odom_frame: str, base_frame: str) -> None:
         """From now on asks for transforms between these frames."""
         with self._has_news:
             self._odom_frame, self._base_frame = odom_frame, base_frame
             self._mountings.clear()
 
-    def take(self, message) -> None:
+    def add(self, message) -> None:
         """Takes in a scan, as one that comes by topic."""
         with self._has_news:
             if message.header.stamp.to_sec() < self._newest_stamp.to_sec() - JUMP_BACK_SECONDS:
@@ -81,11 +81,11 @@ class ScanQueue:
             self._waiting[self._received] = message
         self._wake()
 
-    def hear_no_more(self) -> None:
+    def unsubscribe(self) -> None:
         """Only what is given to ``take`` counts; it may be published on the topic and does not come again."""
         self._heard.unregister()
 
-    def take_no_more(self) -> None:
+    def finish(self) -> None:
         """Nothing more will come: what cannot be handed on now is skipped."""
         self._is_ending = True
         self._wake()
@@ -95,7 +95,7 @@ class ScanQueue:
             self._wake()
 
     def _wake(self):
-        if self._step.is_on and not self._is_ending:
+        if self._step.is_synchronized and not self._is_ending:
             return  # the moment has it looked after
         with self._has_news:
             self._news += 1
@@ -107,7 +107,7 @@ class ScanQueue:
             with self._has_news:
                 self._has_news.wait_for(lambda: self._news != seen or rospy.is_shutdown())  # noqa: B023
                 seen = self._news
-            if not self._step.is_on:
+            if not self._step.is_synchronized:
                 self._deal_with_waiting()
 
     def _deal_with_waiting(self):

@@ -10,8 +10,8 @@ import tf2_ros
 from geometry_msgs.msg import TransformStamped
 
 from planar import Pose2
-from planar_ros.messages.border import WARN_SECONDS, MessageError, is_stamp
 from planar_ros.messages.conversion import frame_name, pose2_of, transform_msg
+from planar_ros.messages.validation import WARN_SECONDS, MessageError, is_stamp
 
 # A stamp this much older than the one before it means that time has jumped back: a bag's loop, a reset.
 JUMP_BACK_SECONDS = 1.0
@@ -30,7 +30,7 @@ class TransformFilter:
         self._newest: Dict[Tuple[str, str], float] = {}
         self._lock = threading.Lock()
 
-    def take(self, transforms: Iterable[TransformStamped], publisher: str, is_static: bool = False) -> None:
+    def add(self, transforms: Iterable[TransformStamped], publisher: str, is_static: bool = False) -> None:
         """Takes in what one publisher said; stamps that no clock shows are left out."""
         usable = [transform for transform in transforms if is_stamp(transform.header.stamp)]
         if is_static:
@@ -61,19 +61,19 @@ class TransformFilter:
 class _Listener(tf2_ros.TransformListener):
     """tf2's listener, which clears the buffer when the clock jumps, with an intake of ours."""
 
-    def __init__(self, buffer, intake, **connection):
-        self._intake = intake
+    def __init__(self, buffer, transform_filter, **connection):
+        self._filter = transform_filter
         super().__init__(buffer, **connection)
 
     def callback(self, data):
-        self._take(data, False)
+        self._add(data, False)
 
     def static_callback(self, data):
-        self._take(data, True)
+        self._add(data, True)
 
-    def _take(self, data, is_static):
+    def _add(self, data, is_static):
         self.check_for_reset()
-        self._intake.take(data.transforms, data._connection_header.get("callerid", ""), is_static)
+        self._filter.add(data.transforms, data._connection_header.get("callerid", ""), is_static)
 
 
 class Transforms:
@@ -81,8 +81,8 @@ class Transforms:
 
     def __init__(self, cache_seconds: float = 10.0):
         self.buffer = tf2_ros.Buffer(rospy.Duration(cache_seconds), debug=False)
-        self._intake = TransformFilter(self.buffer)
-        self._listener = _Listener(self.buffer, self._intake, queue_size=100, tcp_nodelay=True)
+        self._filter = TransformFilter(self.buffer)
+        self._listener = _Listener(self.buffer, self._filter, queue_size=100, tcp_nodelay=True)
         self._broadcaster = tf2_ros.TransformBroadcaster()
 
     def lookup(self, target: str, source: str, stamp: Optional[rospy.Time] = None) -> Optional[Pose2]:
@@ -131,13 +131,13 @@ class Transforms:
     def send(self, child_in_parent: Pose2, parent: str, child: str, stamp: rospy.Time) -> None:
         self._broadcaster.sendTransform(transform_msg(child_in_parent, parent, child, stamp))
 
-    def take(self, message, is_static: bool = False) -> None:
+    def add(self, message, is_static: bool = False) -> None:
         """Takes in a tf2_msgs/TFMessage that did not come by topic, as from a bag."""
-        self._intake.take(message.transforms, "", is_static)
+        self._filter.add(message.transforms, "", is_static)
 
     def clear(self) -> None:
         """Forgets everything, as after time has jumped back."""
-        self._intake.clear()
+        self._filter.clear()
 
     def _lookup(self, target, source, stamp):
         if stamp is not None and not is_stamp(stamp):

@@ -1,8 +1,5 @@
-"""Logical time: messages take effect at logical instants (docs/explanation/deterministic_runs.md)."""
+"""Deprecated: use planar_ros.lockstep."""
 
 from planar.deprecation import deprecated_names
-from planar_ros.step.step import LockstepClient, has_synchronised_publisher
 
-__all__ = ["LockstepClient", "has_synchronised_publisher"]
-
-__getattr__ = deprecated_names(__name__, {"Step": "LockstepClient"})
+__getattr__ = deprecated_names(__name__, {"Step": "planar_ros.lockstep:LockstepClient"})

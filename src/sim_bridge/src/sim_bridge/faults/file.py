@@ -43,7 +43,7 @@ def _fault(entry: Table, unsupported: Check) -> Fault:
     name = _kind(entry)
     reason = unsupported(name)
     if reason is not None:
-        raise entry.complaint("kind", f"cannot be used: {reason}")
+        raise entry.error_at("kind", f"cannot be used: {reason}")
     start, end = entry.number("start", 0.0), float("inf")
     entry.check(start >= 0.0, "start", "not negative")
     if "end" in entry:
@@ -66,5 +66,5 @@ def _kind(entry: Table) -> str:
     try:
         kind_named(name)
     except SettingsError as error:
-        raise entry.complaint("kind", f"cannot be used: {error}") from None
+        raise entry.error_at("kind", f"cannot be used: {error}") from None
     return name

@@ -4,7 +4,7 @@ import numpy as np
 
 from planar import FREE, Pose2
 from planar.geometry.distance_field import distance_field
-from planar.geometry.ways import grid_graph
+from planar.geometry.grid_graph import grid_graph
 from sim_bridge.errors import WorldError
 from sim_bridge.views.true_map import true_map
 from sim_bridge.world import World

@@ -11,8 +11,8 @@ from nav_msgs.msg import MapMetaData
 from std_msgs.msg import Float64
 
 from planar import OccupancyGrid
+from planar_ros.lockstep import LockstepClient
 from planar_ros.messages.conversion import GetMapArrays, OccupancyGridArrays, frame_name, grid_to_msg
-from planar_ros.step import LockstepClient
 from slam_lite.config import NodeSettings
 from slam_lite.ros.thread_safe_mapper import ThreadSafeMapper
 
@@ -76,7 +76,7 @@ class MapPublisher:
         step = LockstepClient.of_node()
         while not rospy.is_shutdown():
             self._is_due.wait()
-            if step.is_on:
+            if step.is_synchronized:
                 time.sleep(IN_STEP_SECONDS)
             else:
                 self.publish_if_due()

@@ -4,9 +4,9 @@ from typing import Optional
 
 import rospy
 
+from planar_ros.lockstep import LockstepClient
 from planar_ros.messages.conversion import frame_name
 from planar_ros.messages.transforms import Transforms
-from planar_ros.step import LockstepClient
 from slam_lite.config import NodeSettings
 from slam_lite.ros.thread_safe_mapper import ThreadSafeMapper
 

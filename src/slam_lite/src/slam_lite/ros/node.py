@@ -6,14 +6,14 @@ from std_srvs.srv import SetBool, SetBoolResponse
 
 from planar import PlanarError, Pose2
 from planar.config.parameters import official_names
-from planar_ros.messages.border import subscribe
+from planar_ros.lockstep import LockstepClient
 from planar_ros.messages.conversion import frame_name, pose2_from_msg, scan_from_msg
 from planar_ros.messages.scan_queue import ScanQueue
 from planar_ros.messages.transforms import Transforms
+from planar_ros.messages.validation import subscribe
 from planar_ros.node.parameters import read_settings
-from planar_ros.node.shell import run
-from planar_ros.node.waiting import ReadinessMonitor
-from planar_ros.step import LockstepClient
+from planar_ros.node.readiness import ReadinessMonitor
+from planar_ros.node.runner import run
 from slam_lite.config import WITHOUT_EFFECT, NodeSettings
 from slam_lite.ros.file_services import FileServices
 from slam_lite.ros.input_checks import WARNING_SECONDS, LaserMountingCheck, OdometryCheck
@@ -62,8 +62,8 @@ class SlamNode:
             self._on_skipped_scan,
             size=SCAN_QUEUE_SIZE,
         )
-        self._step.at_moments(self._mapper.close_loops)
-        self._step.at_moments(self._maps.publish_if_due)
+        self._step.on_instant(self._mapper.close_loops)
+        self._step.on_instant(self._maps.publish_if_due)
         MapTransformBroadcaster(settings, self._mapper, self._transforms)
         self._step.join()
         ReadinessMonitor(

@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import List, Optional
 
 from planar import PlanarError, save_map
-from planar_ros.bags.bag import BagError
-from planar_ros.bags.replaying import (
+from planar_ros.bags.bag_reader import BagError
+from planar_ros.bags.offline_replay import (
     add_replay_options,
     load_settings,
     process_scans,

@@ -9,7 +9,7 @@ from functools import partial
 import rospy
 
 from planar import Pose2
-from planar_ros.node.kept_file import FileCheckpoint
+from planar_ros.node.checkpoint import FileCheckpoint
 from slam_lite.ros.thread_safe_mapper import ThreadSafeMapper
 from slam_lite.state import StateFileError, save_state
 
@@ -45,7 +45,7 @@ class StateCheckpointer:
             self._is_due.set()
 
     def _recover(self) -> None:
-        found = self._checkpoint.found
+        found = self._checkpoint.latest
         if found is None:
             return
         try:
@@ -64,4 +64,4 @@ class StateCheckpointer:
     def _save(self) -> None:
         state, odom_in_map = self._mapper.snapshot()
         if len(state.poses) > 0:
-            self._checkpoint.keep(partial(save_state, state, is_compressed=False), asdict(odom_in_map))
+            self._checkpoint.save(partial(save_state, state, is_compressed=False), asdict(odom_in_map))

@@ -8,7 +8,7 @@ import rospy
 
 from planar import Pose2, Scan
 from planar.geometry.pose import check_pose
-from planar_ros.step import LockstepClient
+from planar_ros.lockstep import LockstepClient
 from slam_lite.config import NodeSettings
 from slam_lite.map_localizer import MapLocalizer
 from slam_lite.mapper import Mapper, PoseUpdate
@@ -171,7 +171,7 @@ class ThreadSafeMapper:
     def _close_loops_forever(self) -> None:
         step = LockstepClient.of_node()
         while not rospy.is_shutdown():
-            if step.is_on or not self._run_closure_task():
+            if step.is_synchronized or not self._run_closure_task():
                 with self._lock:
                     self._has_new_keyframes.wait(timeout=1.0)
 

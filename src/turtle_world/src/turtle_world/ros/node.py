@@ -14,7 +14,7 @@ from std_srvs.srv import Empty, EmptyResponse
 from turtlesim.srv import Kill, KillResponse, Spawn, SpawnResponse
 
 from planar import FileWriteError, PlanarError, write_atomically
-from planar_ros.node.shell import run
+from planar_ros.node.runner import run
 from turtle_world.canvas import BACKGROUND, Color
 from turtle_world.physics import PERIOD
 from turtle_world.ros.markers import TurtleMarkers

@@ -6,7 +6,7 @@ import rospy
 from geometry_msgs.msg import Twist
 
 from planar import PlanarError
-from planar_ros.node.shell import run
+from planar_ros.node.runner import run
 from teleop_lite.terminal import CTRL_C, Terminal
 
 # Last character of an arrow key's escape sequence -> fractions of the linear and angular scale.

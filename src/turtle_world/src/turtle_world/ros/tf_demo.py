@@ -9,7 +9,7 @@ from turtlesim.msg import Pose
 from turtlesim.srv import Spawn
 
 from planar import PlanarError
-from planar_ros.node.shell import run
+from planar_ros.node.runner import run
 
 LEADER, FOLLOWER = "turtle1", "turtle2"
 SPAWN_POSE = (4.0, 2.0, 0.0)  # x (m), y (m), theta (rad)

@@ -14,7 +14,7 @@ from turtlesim.srv import (
     TeleportRelativeResponse,
 )
 
-from planar_ros.messages.border import advertise_service, subscribe
+from planar_ros.messages.validation import advertise_service, subscribe
 from turtle_world.canvas import Pen
 from turtle_world.world import TurtleState, TurtleVelocity, TurtleWorld
 

@@ -22,8 +22,8 @@ from gazebo_ros.ros.services import (
     spawn_urdf_model_client,
 )
 from gazebo_ros.spawn_options import parse
-from planar_ros.node.command_line import warn_unknown
-from planar_ros.node.shell import init_node
+from planar_ros.node.entry import warn_unknown
+from planar_ros.node.runner import init_node
 from supervision.interruption import handling_signals, on_signals
 
 PARAMETER_SECONDS = 30.0

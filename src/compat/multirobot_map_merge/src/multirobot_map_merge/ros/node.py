@@ -11,7 +11,7 @@ from multirobot_map_merge.map_merging import merge_maps
 from planar import OccupancyGrid, PlanarError, Pose2
 from planar_ros.messages.conversion import frame_name, grid_from_msg, grid_to_msg
 from planar_ros.messages.transforms import Transforms
-from planar_ros.node.shell import run
+from planar_ros.node.runner import run
 
 
 class MapMerge:

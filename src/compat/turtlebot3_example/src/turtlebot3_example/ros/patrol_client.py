@@ -5,7 +5,7 @@ import sys
 import actionlib
 import rospy
 
-from planar_ros.node.shell import init_node
+from planar_ros.node.runner import init_node
 from turtlebot3_example.msg import Turtlebot3Action, Turtlebot3Goal
 from turtlebot3_example.ros.input_lines import read_lines
 

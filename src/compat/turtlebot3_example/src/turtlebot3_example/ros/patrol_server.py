@@ -5,7 +5,7 @@ from contextlib import suppress
 import actionlib
 import rospy
 
-from planar_ros.node.shell import run
+from planar_ros.node.runner import run
 from turtlebot3_example.go_to_pose import figure_corners
 from turtlebot3_example.msg import Turtlebot3Action, Turtlebot3Result
 from turtlebot3_example.ros.odometry_controller import OdometryController

@@ -7,7 +7,7 @@ from contextlib import suppress
 import rospy
 
 from planar import Pose2
-from planar_ros.node.shell import init_node
+from planar_ros.node.runner import init_node
 from turtlebot3_example.ros.input_lines import read_lines
 from turtlebot3_example.ros.odometry_controller import OdometryController
 

@@ -10,7 +10,7 @@ from tf2_ros import TransformBroadcaster
 
 from planar import SettingsError, Twist2
 from planar_ros.messages.conversion import pose2_to_msg
-from planar_ros.node.shell import run
+from planar_ros.node.runner import run
 from turtlebot3_fake.differential_drive import TRACKS, DifferentialDrive
 
 RATE = 30.0

@@ -16,11 +16,11 @@ from std_msgs.msg import Header, String
 from tf2_msgs.msg import TFMessage
 
 from home_service.ros.bags import BROKEN, ENDED, PLAYING, bags_of
-from planar_ros.bags.bag import LASER_SCAN, TF_STATIC, BagError, RecordedMessage
+from planar_ros.bags.bag_reader import LASER_SCAN, TF_STATIC, BagError, RecordedMessage
 from planar_ros.bags.recording import Recording
+from planar_ros.lockstep.ticker import PROGRESS_TOPIC
 from planar_ros.messages.conversion import frame_name, time_of
-from planar_ros.node.progress import TOPIC as PROGRESS_TOPIC
-from planar_ros.node.shell import run
+from planar_ros.node.runner import run
 from sim_bridge.pacing import Pacer
 
 SUBSCRIBER_TIMEOUT = 30.0
@@ -48,7 +48,7 @@ class BagPlayer:
         rospy.Subscriber(PROGRESS_TOPIC, Header, self._on_progress, queue_size=50, tcp_nodelay=True)
         types = self._recording.types
         self._topics: Set[str] = {topic for topic, kind in types.items() if kind in INPUT_TYPES}
-        self._topics -= self._recording.foreign
+        self._topics -= self._recording.unavailable_topics
         if LASER_SCAN not in types.values():
             topics = ", ".join(sorted(types)) or "none"
             raise BagError(f"{self._recording.paths[0]}: no laser scans; topics: {topics}")
@@ -76,7 +76,7 @@ class BagPlayer:
             self._state.publish(BROKEN + str(error))
             return
         self._wait_until_due(self._recording.end + 2.0 * CLOCK_SECONDS)
-        self._state.publish("; ".join([ENDED, *self._recording.gaps]))
+        self._state.publish("; ".join([ENDED, *self._recording.truncations]))
 
     def _play(self, messages: Iterable[RecordedMessage]) -> None:
         for topic, message, stamp in messages:

@@ -16,12 +16,12 @@ from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker, MarkerArray
 
 from home_service.ros.bags import BROKEN, ENDED, PLAYING, bags_of
-from planar_ros.bags.bag import TF_STATIC, BagError, RecordedMessage
-from planar_ros.bags.playhead import PlaybackClock
+from planar_ros.bags.bag_reader import TF_STATIC, BagError, RecordedMessage
+from planar_ros.bags.playback_clock import PlaybackClock
 from planar_ros.bags.recording import Recording
-from planar_ros.bags.standing import MARKERS, snapshot_at
+from planar_ros.bags.snapshot import MARKERS, snapshot_at
 from planar_ros.messages.conversion import time_of
-from planar_ros.node.shell import run
+from planar_ros.node.runner import run
 
 # The running rosout aggregates replayed log messages again; after a seek, old log messages are not repeated.
 ROSOUT, ROSOUT_AGG = "/rosout", "/rosout_agg"
@@ -48,7 +48,7 @@ class BagViewer:
         self._playback_stamp = -math.inf
         self._clock = rospy.Publisher("/clock", Clock, queue_size=10, tcp_nodelay=True)
         self._clock_stamp = -math.inf
-        types, foreign = self._recording.types, self._recording.foreign
+        types, foreign = self._recording.types, self._recording.unavailable_topics
         for topic in foreign:
             rospy.logwarn("%s is left out: the installed %s is not the recorded one", topic, types[topic])
         self._topics = set(types) - foreign - {"/clock", TF_STATIC, ROSOUT_AGG}
@@ -71,7 +71,7 @@ class BagViewer:
         try:
             while not rospy.is_shutdown():
                 if self._play_on():
-                    self._state.publish("; ".join([ENDED, *self._recording.gaps]))
+                    self._state.publish("; ".join([ENDED, *self._recording.truncations]))
                     if not self._stays:
                         return
                     self._wait_for_seek()
@@ -106,7 +106,7 @@ class BagViewer:
                 delay = self._head.delay(stamp, wall)
                 self._publish_playback(wall)
                 if delay <= 0.0:
-                    self._head.reach(min(stamp, self._recording.end))
+                    self._head.advance_to(min(stamp, self._recording.end))
                     return True
                 self._changed.wait(min(delay, POLL_SECONDS))
         return False

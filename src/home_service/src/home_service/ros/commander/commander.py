@@ -30,8 +30,8 @@ from planar_ros.calls.move_base import MoveBaseClient
 from planar_ros.calls.services import call_service
 from planar_ros.messages.conversion import pose2_to_msg
 from planar_ros.messages.transforms import Transforms
-from planar_ros.node.listeners import has_all_subscribers
-from planar_ros.node.shell import init_node, shut_down_on_signals
+from planar_ros.node.runner import init_node, shut_down_on_signals
+from planar_ros.node.topics import has_all_subscribers
 
 POLL_SECONDS = 0.05
 # Variances of an initial pose, as set by rviz [m^2, m^2, rad^2].

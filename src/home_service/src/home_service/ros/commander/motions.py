@@ -14,8 +14,8 @@ from nav_msgs.msg import Odometry
 from home_service.ros.commander.outcomes import Feedback, Outcome, Result
 from home_service.ros.commander.task import PATIENCE_SECONDS, CommanderTask
 from planar import OccupancyGrid, Pose2, wrap
-from planar_ros.messages.border import subscribe
 from planar_ros.messages.conversion import OccupancyGridArrays, grid_from_msg, pose2_from_msg
+from planar_ros.messages.validation import subscribe
 
 # Maximum speed per remaining distance or angle [1/s].
 SLOW_DOWN = 1.5

@@ -7,9 +7,9 @@ from geometry_msgs.msg import PoseStamped
 
 from move_base_lite.errors import NavigationError
 from planar import Pose2
-from planar_ros.messages.border import MessageError
 from planar_ros.messages.conversion import frame_name, pose2_from_msg
 from planar_ros.messages.transforms import Transforms
+from planar_ros.messages.validation import MessageError
 
 INVALID_QUATERNION = "Aborting on goal because it was sent with an invalid quaternion"
 MIN_SQUARED_NORM = 1e-6

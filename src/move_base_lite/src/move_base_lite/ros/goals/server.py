@@ -11,8 +11,8 @@ from move_base_lite.ros.goals.messages import goal_from_msg
 from move_base_lite.ros.topics.plan_messages import pose_msg
 from planar import Pose2
 from planar_ros.calls.actions import ActionServer
+from planar_ros.lockstep import LockstepClient
 from planar_ros.messages.transforms import Transforms
-from planar_ros.step import LockstepClient
 
 
 class GoalServer:
@@ -27,7 +27,7 @@ class GoalServer:
     def __init__(self, map_frame: str, transforms: Transforms, on_cancel: Callable[[], None]):
         self._map_frame, self._transforms = map_frame, transforms
         self._server = ActionServer("move_base", MoveBaseAction, auto_start=False)
-        self._server.register_preempt_callback(lambda: LockstepClient.of_node().soon(on_cancel))
+        self._server.register_preempt_callback(lambda: LockstepClient.of_node().defer(on_cancel))
         self._current_goal = rospy.Publisher("~current_goal", PoseStamped, queue_size=1)
         self._action_goal = rospy.Publisher("move_base/goal", MoveBaseActionGoal, queue_size=1)
         rospy.Subscriber("move_base_simple/goal", PoseStamped, self._on_simple_goal, queue_size=1)

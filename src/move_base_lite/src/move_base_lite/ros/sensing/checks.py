@@ -3,8 +3,8 @@
 from sensor_msgs.msg import PointCloud2, PointField
 
 from planar import Pose2
-from planar_ros.messages.border import MessageError
 from planar_ros.messages.conversion import scan_from_msg
+from planar_ros.messages.validation import MessageError
 
 
 def check_message(message) -> None:

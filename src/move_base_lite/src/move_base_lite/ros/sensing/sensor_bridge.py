@@ -18,7 +18,6 @@ from move_base_lite.ros.sensing.checks import check_message
 from move_base_lite.ros.sensing.clouds import points_of
 from move_base_lite.ros.sensing.diagnostics import SensorDiagnostics
 from planar import Pose2, Twist2
-from planar_ros.messages.border import WARN_SECONDS, subscribe
 from planar_ros.messages.conversion import (
     LaserScanArrays,
     frame_name,
@@ -27,6 +26,7 @@ from planar_ros.messages.conversion import (
     twist2_from_msg,
 )
 from planar_ros.messages.transforms import Transforms
+from planar_ros.messages.validation import WARN_SECONDS, subscribe
 
 QUEUE_SIZE = 5
 # A sensor without messages for so long [s], which stopped about when localization did, may be the cause.

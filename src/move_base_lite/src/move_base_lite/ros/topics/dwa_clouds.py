@@ -5,7 +5,7 @@ import rospy
 from sensor_msgs.msg import PointCloud2
 
 from move_base_lite.control import TrajectorySamples
-from planar_ros.messages.clouds import cloud_msg
+from planar_ros.messages.conversion import cloud_msg
 
 TRAJECTORY_FIELDS = ("x", "y", "z", "theta", "cost")
 COST_FIELDS = ("x", "y", "z", "path_cost", "goal_cost", "occ_cost", "total_cost")

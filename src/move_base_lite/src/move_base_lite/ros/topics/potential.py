@@ -8,8 +8,7 @@ from sensor_msgs.msg import PointCloud2
 
 from move_base_lite.planning import Potential
 from planar import OccupancyGrid, Pose2
-from planar_ros.messages.clouds import cloud_msg
-from planar_ros.messages.conversion import OccupancyGridArrays, grid_to_msg
+from planar_ros.messages.conversion import OccupancyGridArrays, cloud_msg, grid_to_msg
 
 CLOUD_FIELDS = ("x", "y", "z", "pot")
 # Height of the goal in navfn's cloud [m].

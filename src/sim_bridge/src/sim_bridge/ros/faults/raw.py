@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 import genpy
 
-from planar_ros.messages.border import MessageError
+from planar_ros.messages.validation import MessageError
 
 
 class RawMessage:

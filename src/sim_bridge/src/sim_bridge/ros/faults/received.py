@@ -14,7 +14,6 @@ from std_msgs.msg import Header
 
 from planar import Pose2, Scan, Twist2
 from planar.geometry.limits import MAX_COORDINATE
-from planar_ros.messages.border import LATEST_STAMP, MessageError
 from planar_ros.messages.conversion import (
     LaserScanArrays,
     pose2_from_msg,
@@ -22,6 +21,7 @@ from planar_ros.messages.conversion import (
     time_of,
     twist2_from_msg,
 )
+from planar_ros.messages.validation import LATEST_STAMP, MessageError
 from sim_bridge.geometry.pose3 import from_pose2
 from sim_bridge.ros.messages import pose3_from_msg, pose3_to_msg
 from sim_bridge.sensors.odometry import Odometry

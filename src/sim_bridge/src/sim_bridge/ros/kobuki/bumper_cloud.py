@@ -7,7 +7,7 @@ import numpy as np
 import rospy
 from sensor_msgs.msg import PointCloud2
 
-from planar_ros.messages.clouds import cloud_msg
+from planar_ros.messages.conversion import cloud_msg
 from sim_bridge.sensors.kobuki import CENTRE, LEFT, RIGHT, KobukiReading
 
 FRAME = "base_link"

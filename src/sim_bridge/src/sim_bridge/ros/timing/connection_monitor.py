@@ -6,8 +6,8 @@ from typing import Collection, Dict, FrozenSet, List, Set
 
 import rospy
 
-from planar_ros.step.closure import ConnectionCheck
-from planar_ros.step.step import observers
+from planar_ros.lockstep.client import observers
+from planar_ros.lockstep.connection_check import ConnectionCheck
 
 # Names of the observers to wait for, separated by spaces; a launch file knows them before they start.
 EXPECTED_OBSERVERS_PARAMETER = "/simulation/expected_observers"
@@ -47,7 +47,7 @@ class ConnectionMonitor:
         self._missing_since: Dict[str, float] = {}
         self._given_up: Set[str] = set()
         self._unreported: List[str] = []
-        self._closure = ConnectionCheck()
+        self._connection_check = ConnectionCheck()
         self._changed = threading.Condition()
         self._version = 1
         self._checked_version = 0 if expected else 1
@@ -98,7 +98,7 @@ class ConnectionMonitor:
         with self._changed:
             absent, members = sorted(self._absent), {self._simulator, *self._joined}
         limits: Dict[str, float] = {}
-        known, able = self._closure.known() if absent else (set(), set())
+        known, able = self._connection_check.known_nodes() if absent else (set(), set())
         for name in absent:
             if name in known and name not in able:
                 limits[f"the node {name}, which does not support lock-step"] = JOIN_SECONDS
@@ -108,7 +108,7 @@ class ConnectionMonitor:
         for name in sorted(self._expected_observers - self.observers):
             limits[f"the observer {name}"] = START_SECONDS
         if not absent:
-            for gap in self._closure.gaps(members, self.observers, self._static_publishers):
+            for gap in self._connection_check.missing(members, self.observers, self._static_publishers):
                 limits[f"the connection of {gap}"] = CONNECT_SECONDS
         return [text for text, seconds in limits.items() if not self._is_given_up(text, seconds)]
 

@@ -12,12 +12,12 @@ import rospy
 from sim_bridge_msgs.msg import Answer, Moment
 from std_msgs.msg import Header, String
 
+from planar_ros.lockstep import transport
+from planar_ros.lockstep.client import STATIC_PUBLISHERS_PARAMETER, WAIT_FOR_PARAMETER
+from planar_ros.lockstep.message_buffer import MessageBuffer
+from planar_ros.lockstep.service_calls import delay_service_replies
+from planar_ros.lockstep.transport import ANSWER_TOPIC, INSTANT_TOPIC, LockstepConnection
 from planar_ros.messages.conversion import time_of
-from planar_ros.step import transport
-from planar_ros.step.calls import delay_service_replies
-from planar_ros.step.inbox import MessageBuffer
-from planar_ros.step.step import STATIC_PUBLISHERS_PARAMETER, WAIT_FOR_PARAMETER
-from planar_ros.step.transport import ANSWER_TOPIC, TICK_TOPIC, LockstepConnection
 from sim_bridge.lock_step import LockStepCoordinator
 from sim_bridge.ros.call_queue import CallQueue
 from sim_bridge.ros.timing.connection_monitor import ConnectionMonitor
@@ -59,7 +59,7 @@ class LockStep:
         self._blocked_since: Optional[float] = None
         self._remarks: List[str] = []
         self._known_remarks: Set[str] = set()
-        self._moments = rospy.Publisher(TICK_TOPIC, Moment, queue_size=10, tcp_nodelay=True)
+        self._moments = rospy.Publisher(INSTANT_TOPIC, Moment, queue_size=10, tcp_nodelay=True)
         self._remarks_topic = rospy.Publisher(REMARKS_TOPIC, String, queue_size=1, latch=True)
         self._answers = rospy.Subscriber(
             ANSWER_TOPIC, Answer, self._on_answer, queue_size=100, tcp_nodelay=True
@@ -148,7 +148,7 @@ class LockStep:
         members = frozenset((self._name, *self.members)) if self.members else frozenset()
         if members_changed:
             self._inbox.members = LockstepConnection.members = members
-            LockstepConnection.audience = self._connections.observers
+            LockstepConnection.observers = self._connections.observers
             self._published_counts.clear()
             if not members:
                 self._inbox.release_all()  # what the last member sent before it left

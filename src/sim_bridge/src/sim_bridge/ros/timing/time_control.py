@@ -9,11 +9,11 @@ import rospy
 from sim_bridge_msgs.srv import Step, StepResponse
 from std_msgs.msg import Header
 
+from planar_ros.lockstep import transport
+from planar_ros.lockstep.ticker import PROGRESS_TOPIC
 from planar_ros.messages.conversion import time_of
-from planar_ros.node.progress import TOPIC as PROGRESS_TOPIC
+from planar_ros.node.readiness import ReadinessMonitor, StallReporter
 from planar_ros.node.reconfigure import SettingsReconfigureServer
-from planar_ros.node.waiting import ReadinessMonitor, StallReporter
-from planar_ros.step import transport
 from sim_bridge.config import RunTimeSettings
 from sim_bridge.pacing import Pacer
 from sim_bridge.ros.call_queue import CallQueue
@@ -51,7 +51,7 @@ class TimeControl:
         self._requests: List[_StepRequest] = []
         rospy.Subscriber(PROGRESS_TOPIC, Header, self._on_progress, queue_size=100, tcp_nodelay=True)
         rospy.Service("~step", Step, self._on_step)
-        self._hold_up = StallReporter()
+        self._stall_reporter = StallReporter()
         ReadinessMonitor({f"{name} on {PROGRESS_TOPIC}": self._is_followed(name) for name in pacer.wait_for})
 
     @property
@@ -73,7 +73,7 @@ class TimeControl:
     def wait_for_step(self) -> bool:
         """Wait until the next step may be taken; return False if pending calls have to be run first."""
         may_step = self._may_step()
-        self._hold_up.look([] if may_step else self._waiting_for())
+        self._stall_reporter.update([] if may_step else self._waiting_for())
         return may_step
 
     def _may_step(self) -> bool:

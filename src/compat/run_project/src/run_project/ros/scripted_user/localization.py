@@ -11,7 +11,7 @@ from move_base_msgs.msg import MoveBaseActionResult
 from planar import Pose2
 from planar_ros.messages.conversion import pose2_to_msg
 from planar_ros.messages.transforms import Transforms
-from planar_ros.node.listeners import has_all_subscribers
+from planar_ros.node.topics import has_all_subscribers
 
 if TYPE_CHECKING:
     from run_project.ros.scripted_user.user import ScriptedUser

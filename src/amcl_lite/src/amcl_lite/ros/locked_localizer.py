@@ -1,0 +1,71 @@
+"""The node's Localizer, as all its callbacks share it."""
+
+import threading
+from typing import Optional, Tuple
+
+import numpy as np
+import rospy
+
+from amcl_lite.config import NodeSettings
+from amcl_lite.localizer import Localizer
+from amcl_lite.ros.pose_checkpoint import read_initial_pose
+from planar import OccupancyGrid, Pose2
+
+
+class LockedLocalizer:
+    """One Localizer, none before the first map, and the settings in force, guarded by one lock.
+
+    Whoever works with ``localizer`` for longer than one call here holds ``lock``.
+    """
+
+    def __init__(self, settings: NodeSettings):
+        self.settings = settings
+        self.lock = threading.RLock()
+        self.localizer: Optional[Localizer] = None
+        self._rng = np.random.default_rng(settings.seed if settings.seed >= 0 else None)
+        self._pending_pose: Optional[Tuple[Pose2, np.ndarray]] = None
+
+    def set_map(self, grid: OccupancyGrid) -> Localizer:
+        """Goes over to a map, at the start pose, or at the pose given while there was no map.
+
+        Raises LocalizationError if the map is of no use.
+        """
+        localizer = Localizer(grid, self.settings, self._rng)
+        start = read_initial_pose()
+        localizer.set_pose(start.pose, start.covariance)
+        with self.lock:
+            if self._pending_pose is not None:
+                localizer.set_pose(*self._pending_pose)
+                self._pending_pose = None
+            self.localizer = localizer
+        return localizer
+
+    def set_pose(self, base_in_map: Pose2, covariance: np.ndarray, force_update: bool) -> None:
+        """Starts anew around a pose, as soon as there is a map; ``covariance``: (3, 3), m^2 and rad^2."""
+        with self.lock:
+            if self.localizer is None:
+                self._pending_pose = (base_in_map, covariance)
+                return
+            self.localizer.set_pose(base_in_map, covariance)
+            if force_update:
+                self.localizer.request_update()
+
+    def start_global_localization(self) -> None:
+        """Global localization; nothing without a map."""
+        with self.lock:
+            if self.localizer is not None:
+                rospy.loginfo("Initializing with uniform distribution")
+                self.localizer.start_global_localization()
+
+    def request_update(self) -> None:
+        """Makes the next scan count; nothing without a map."""
+        with self.lock:
+            if self.localizer is not None:
+                self.localizer.request_update()
+
+    def reconfigure(self, settings: NodeSettings) -> None:
+        """Goes on with other settings; as in amcl, the filter starts anew around the last estimate."""
+        with self.lock:
+            self.settings = settings
+            if self.localizer is not None:
+                self.localizer.reconfigure(settings)

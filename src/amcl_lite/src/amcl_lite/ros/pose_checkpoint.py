@@ -1,0 +1,81 @@
+"""What is kept for a restart, where the node finds out where it was.
+
+The official parameters say where the robot was; it has driven on meanwhile. So after a crash, where odometry
+goes on, what the filter believed counts instead, and where odometry has brought the robot since.
+"""
+
+import math
+import time
+from dataclasses import asdict
+from functools import partial
+from typing import Optional
+
+import rospy
+
+from amcl_lite.belief import Belief, load_particles, save_particles
+from amcl_lite.config import InitialPose, NodeSettings
+from amcl_lite.errors import LocalizationError
+from amcl_lite.localizer import is_valid_initial_pose
+from planar import Pose2
+from planar.config.parameters import official_names
+from planar_ros.node.checkpoint import FileCheckpoint
+from planar_ros.node.parameters import ParameterWriter, read_settings
+from planar_ros.node.reconfigure import RESTORE
+
+# Wall seconds between two writings at the least: a simulation may be so fast that the master did little else.
+_LEAST_SECONDS = 0.5
+
+
+def read_initial_pose() -> InitialPose:
+    """The ``~initial_pose_*`` and ``~initial_cov_*`` of now; NaN is ignored, with a warning."""
+    names = official_names(InitialPose)
+    for name in names:
+        value = rospy.get_param("~" + name, 0.0)
+        if isinstance(value, float) and math.isnan(value):
+            rospy.logwarn("ignoring NAN in %s", name)
+            rospy.delete_param("~" + name)
+    return read_settings(InitialPose, names, ignore=(*official_names(NodeSettings), RESTORE))
+
+
+class PoseCheckpoint:
+    """Keeps pose and belief, no more often than the rate says: one as amcl does, one for after a crash."""
+
+    def __init__(self):
+        self._kept_at, self._kept_at_wall = rospy.Time(0), 0.0
+        self._writer = ParameterWriter()
+        self._checkpoint = FileCheckpoint()
+
+    def load_belief(self) -> Optional[Belief]:
+        """What a node of this name that has crashed believed; None without such a one."""
+        found = self._checkpoint.latest
+        if found is None:
+            return None
+        try:
+            particles = load_particles(found.path)
+        except LocalizationError as error:
+            rospy.logwarn("where the robot was before the crash is not known: %s", error)
+            return None
+        poses = {name: Pose2(**found.value[name]) for name in ("base_in_odom", "odom_in_map")}
+        return Belief(particles, is_lost=found.value["is_lost"], **poses)
+
+    def save_if_due(self, rate: float, belief: Belief, base_in_odom: Pose2, covariance) -> None:
+        """``rate``: Hz, 0 or less for never."""
+        now, wall = rospy.Time.now(), time.monotonic()
+        is_due = rate > 0.0 and abs((now - self._kept_at).to_sec()) >= 1.0 / rate
+        if is_due and wall - self._kept_at_wall >= _LEAST_SECONDS:
+            self._kept_at, self._kept_at_wall = now, wall
+            self.save(belief.odom_in_map @ base_in_odom, covariance)
+            self._save_belief(belief)
+
+    def save(self, base_in_map: Pose2, covariance) -> None:
+        """``covariance``: (3, 3); its diagonal is kept. A pose that no node could start from is not."""
+        if not is_valid_initial_pose(base_in_map, covariance):
+            return
+        variances = (float(covariance[i, i]) for i in range(3))
+        kept = InitialPose(base_in_map.x, base_in_map.y, base_in_map.yaw, *variances)
+        names = official_names(InitialPose)
+        self._writer.write({"~" + name: getattr(kept, field) for name, field in names.items()})
+
+    def _save_belief(self, belief: Belief) -> None:
+        poses = {"base_in_odom": asdict(belief.base_in_odom), "odom_in_map": asdict(belief.odom_in_map)}
+        self._checkpoint.save(partial(save_particles, belief.particles), {**poses, "is_lost": belief.is_lost})

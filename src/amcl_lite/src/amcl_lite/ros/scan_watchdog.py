@@ -1,0 +1,44 @@
+"""Warns when scans stay away."""
+
+import threading
+import time
+
+import rospy
+
+SCAN_TIMEOUT_SECONDS = 15.0
+# Wall seconds between two looks: a timer of ROS time would wake with every message of the clock.
+_LOOK_SECONDS = 1.0
+
+
+class ScanWatchdog:
+    """Says so, again and again, while no scan has come on ``topic`` for ``SCAN_TIMEOUT_SECONDS``."""
+
+    def __init__(self, topic: str):
+        self._topic = topic
+        self._last_scan = self._last_warned = rospy.Time(0)
+
+    def start(self) -> None:
+        self.on_scan()
+        threading.Thread(target=self._watch, daemon=True).start()
+
+    def on_scan(self) -> None:
+        """A scan has come."""
+        self._last_scan = self._last_warned = rospy.Time.now()
+
+    def _watch(self):
+        while not rospy.is_shutdown():
+            time.sleep(_LOOK_SECONDS)
+            now = rospy.Time.now()
+            if self._last_warned == rospy.Time(0):  # there was no clock yet
+                self.on_scan()
+            elif (now - self._last_warned).to_sec() > SCAN_TIMEOUT_SECONDS:
+                self._last_warned = now
+                self._warn((now - self._last_scan).to_sec())
+
+    def _warn(self, silence: float):
+        rospy.logwarn(
+            "No laser scan received (and thus no pose updates have been published) for %f seconds.  "
+            "Verify that data is being published on the %s topic.",
+            silence,
+            self._topic,
+        )
