@@ -16,7 +16,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Dict, Iterator, Optional, Set, Tuple
 
-from planar.files.atomically import write_atomically
+from planar.files.writing import write_atomically
 
 DIGESTS = Path("build/kernels.json")
 LIBRARIES = ("numba", "numpy", "llvmlite")

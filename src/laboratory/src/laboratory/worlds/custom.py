@@ -55,14 +55,14 @@ def read_custom_worlds(table: Table, name: str) -> CustomWorlds:
     values = table.table(name)
     try:
         generator_class: Any = load_generator(name)
-        where = values.place_of
+        where = values.location_of
         generator, unknown = settings_from(
             generator_class, {key: values.value(key) for key in values}, where=where
         )
     except PluginError as error:
-        raise table.complaint(name, f"cannot be used: {error}") from None
+        raise table.error_at(name, f"cannot be used: {error}") from None
     except TypeError as error:  # a field without a default that the scenario does not give
-        raise table.complaint(name, f"cannot be used: {error}") from None
+        raise table.error_at(name, f"cannot be used: {error}") from None
     if unknown:
         values.allow_only(*(field.name for field in fields(generator_class)))
     return CustomWorlds(name, generator)
