@@ -43,7 +43,6 @@ class AccessPolicy:
     """
 
     def __init__(self, port: int, hosts: Tuple[str, ...] = LOOPBACK, token: Optional[str] = None):
-        """``hosts``: further names and addresses of this machine."""
         self.token = token or secrets.token_urlsafe(24)
         self._hosts = {*LOOPBACK, *hosts}
         # Cookies are not separated by port: two cockpits on one machine need different names.

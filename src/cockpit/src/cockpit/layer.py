@@ -24,9 +24,9 @@ class DisplayLayer:
     Attributes:
         title: Heading of its topics.
         types: Message types, such as "sensor_msgs/LaserScan".
-        make: Creates the ``Draw`` for one topic.
+        make: Creates the ``Draw`` function for one topic.
         shown: Ends of the names of topics that are enabled at first.
-        seconds: Shortest time between two updates [s].
+        seconds: Shortest time between two updates [wall s].
         needs_all: Whether every message is drawn in order, since each adds to those before.
     """
 

@@ -16,7 +16,11 @@ LATENCY = 0.1
 
 @dataclass(frozen=True)
 class SimulationSettings(NoiseSettings):
-    """Rates and noise of a simulation; rates are in simulated time and must divide ``physics_rate``."""
+    """Rates and noise of a simulation; rates are in simulated time and must divide ``physics_rate``.
+
+    Raises:
+        SettingsError: A value is out of its bounds, or a rate does not divide ``physics_rate``.
+    """
 
     physics_rate: int = parameter(
         200,
@@ -37,7 +41,7 @@ class SimulationSettings(NoiseSettings):
 
 @dataclass(frozen=True)
 class RunTimeSettings:
-    """Parameters that dynamic_reconfigure may change."""
+    """Parameters of the node sim_bridge that dynamic_reconfigure may change."""
 
     speed: float = parameter(
         1.0,
@@ -87,7 +91,7 @@ class BridgeSettings(RunTimeSettings):
 
 @dataclass(frozen=True)
 class RelaySettings:
-    """Parameters of fault_relay, which injects faults between other nodes."""
+    """Parameters of the node fault_relay, which injects faults between other nodes."""
 
     faults_file: str = parameter(
         "",
@@ -105,7 +109,7 @@ class RelaySettings:
 
 @dataclass(frozen=True)
 class RobotSettings:
-    """A robot and its start pose."""
+    """A robot and its start pose (parameters of the node sim_bridge)."""
 
     robot: str = parameter("turtlebot_lidar", "name of a robot, or a URDF or xacro file; empty: no robot")
     x: float = parameter(0.0, "start position in the world", "m")

@@ -46,9 +46,9 @@ class StepResult:
         readings: The readings that sensors delivered since the last step, by sensor name.
         truth: Latest ground truth of pose and velocity.
         odometry: Latest odometry.
-        wheels: Latest wheel angles and speeds.
+        wheels: Latest wheel angles [rad] and speeds [rad/s].
         contacts: Names (``model::link``) of what the robot collided with since the last step.
-        scanner: Name of the first range finder.
+        scanner: Name of the first range finder; empty if there is none.
     """
 
     stamp: float
@@ -66,7 +66,7 @@ class StepResult:
 
     @property
     def twist(self) -> Twist2:
-        """True velocity of the base."""
+        """True velocity of the base, in the base frame."""
         return self.truth.twist
 
     @property

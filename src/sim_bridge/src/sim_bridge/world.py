@@ -51,10 +51,10 @@ class Visual:
 
 @dataclass(frozen=True, eq=False)
 class Inertia:
-    """Where a body's mass is and how it resists rotation (SDF <inertial>).
+    """Mass distribution of a body (SDF <inertial>).
 
     Attributes:
-        pose_in_body: Pose (4, 4) of the centre of mass and the principal axes.
+        pose_in_body: Pose (4, 4) of the centre of mass and the principal axes in the body frame.
         moments: Principal moments of inertia (3,) [kg m^2]; None to compute them from the shapes.
     """
 

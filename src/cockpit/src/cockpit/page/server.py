@@ -37,7 +37,6 @@ class Page:
     """
 
     def __init__(self, address: str, port: int):
-        """Bind and start the server; ``port`` 0 selects a free one."""
         listening = listen(address, port)
         port = listening.getsockname()[1]
         shown = "127.0.0.1" if address in ("0.0.0.0", "::") else address

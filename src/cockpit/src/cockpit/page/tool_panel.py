@@ -6,7 +6,7 @@ WIDTH = 420
 
 
 class ToolPanel:
-    """The Tools tab.
+    """The Tools tab, with a checkbox for each tool.
 
     Args:
         gui: The gui of viser.
@@ -15,7 +15,6 @@ class ToolPanel:
     """
 
     def __init__(self, gui, tools: Iterable[Tuple[str, str]], on_switch: Callable[[str, bool], None]):
-        """Create a checkbox for each (name, title) in ``tools``."""
         self._gui = gui
         self._boxes: Dict[str, Any] = {}
         gui.add_markdown("Each tool opens a window that can be moved and docked.")

@@ -17,7 +17,6 @@ class ViewPanel:
     """
 
     def __init__(self, gui, tab, on_cut: Callable[[float], None]):
-        """Create the controls in ``tab``; ``on_cut`` receives the cut height [m]."""
         self._gui, self._tab = gui, tab
         self._folders: Dict[str, Any] = {}
         self._boxes: Dict[str, Any] = {}

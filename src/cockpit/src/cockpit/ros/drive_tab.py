@@ -55,7 +55,6 @@ class DriveTab:
         notify: Callable[[str], None],
         fixed: Callable[[], str],
     ):
-        """``fixed`` returns the fixed frame."""
         self._graph, self._frames, self._pointer, self._world = graph, frames, pointer, world
         self._notify, self._fixed = notify, fixed
         self._commands, self.teleop = GraphCommands(graph), PageTeleop()

@@ -259,7 +259,7 @@ def _pose(x: float, y: float, yaw: float) -> Pose:
 
 
 def _matrix(pose: Pose) -> np.ndarray:
-    """Raises CockpitError."""
+    """Return a pose as a matrix (4, 4). Raises CockpitError if it is invalid."""
     matrix = pose_from_message(pose.position, pose.orientation)
     if matrix is None:
         raise CockpitError("the simulator returned a pose that is not finite or has a zero quaternion")

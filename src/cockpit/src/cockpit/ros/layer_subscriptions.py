@@ -25,7 +25,14 @@ class LayerSubscription:
         self._due = 0.0
 
     def updates(self, now: float) -> List[LayerUpdate]:
-        """Draw the new messages. Raises any exception of the layer."""
+        """Draw the new messages.
+
+        Args:
+            now: Steady-clock time [s].
+
+        Raises:
+            Exception: Any exception of the layer.
+        """
         if now < self._due:
             return []
         messages = self._feed.messages()
@@ -114,7 +121,7 @@ class LayerManager:
             self._drawer.show(topic, update, now)
 
     def _complain(self, topic: str, text: str) -> None:
-        """Once for each shape that is wrong with a topic."""
+        """Report a text once for each topic until it changes."""
         if text and self._complaints.get(topic) != text:
             self._notify(f"{topic}: {text}")
         self._complaints[topic] = text or self._complaints.get(topic, "")

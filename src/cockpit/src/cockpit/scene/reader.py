@@ -115,7 +115,7 @@ def robot_joints(text: str) -> Dict[str, Tuple[str, np.ndarray]]:
 
 
 def _display_joint(joint: Joint) -> DisplayJoint:
-    """The limit closer to zero, the position in the file, is the closed one."""
+    """Return a joint whose closed position is the limit closer to zero, the position in the file."""
     shut, wide = sorted((joint.lower, joint.upper), key=abs)
     if abs(wide) > BEYOND:
         shut, wide = 0.0, FREELY[joint.kind]
@@ -148,7 +148,7 @@ class _Collector:
 
 
 def _coloured(shape: Shape, rgb) -> Iterator[Tuple[np.ndarray, np.ndarray, Colour]]:
-    """Vertices and triangles of a shape, once for each colour. Raises PlanarError."""
+    """Yield vertices and triangles of a shape, once for each colour."""
     mesh = mesh_of(shape)
     if rgb is not None or mesh.colours is None:
         yield mesh.vertices, mesh.triangles, _colour(rgb or GREY)
@@ -160,7 +160,7 @@ def _coloured(shape: Shape, rgb) -> Iterator[Tuple[np.ndarray, np.ndarray, Colou
 
 
 def _grouped(rows: np.ndarray) -> Iterator[Tuple[np.ndarray, np.ndarray]]:
-    """Each different row, and where it is."""
+    """Yield each distinct row, and the indices at which it is."""
     different, which = np.unique(rows, axis=0, return_inverse=True)
     for number, row in enumerate(different):
         yield row, np.flatnonzero(which.reshape(-1) == number)
@@ -184,7 +184,7 @@ def _origin(element: Element) -> np.ndarray:
 
 
 def _shape(geometry: Element, find_file: FindFile) -> Optional[Shape]:
-    """None if it is a mesh that is not there, or nothing known."""
+    """Return a shape; None for a mesh that is missing or a geometry that is not supported."""
     sizes: Dict[str, Element] = {kind.tag: kind for kind in geometry.children()}
     if "box" in sizes:
         x, y, z = sizes["box"].attribute_sizes("size", 3)

@@ -151,7 +151,7 @@ def _link(
     centre: np.ndarray = IDENTITY,
     joint: Optional[Joint] = None,
 ) -> Dict[str, Any]:
-    """Return createMultiBody's arguments for one link; ``parent``: 0 for the base, else 1 + a link index."""
+    """Return createMultiBody's arguments for a link; ``parent`` is 0 for the base, else 1 + a link index."""
     return {
         "linkMasses": mass,
         "linkCollisionShapeIndices": shape,
