@@ -1,7 +1,7 @@
 """The contract of local planners: a velocity that follows the plan without a collision.
 
 Life cycle: a local planner is constructed with its settings and the control period, once per goal and again
-whenever its settings change; it may keep state in between, such as a warm start. :meth:`~LocalPlanner.follow`
+whenever its settings change; it may keep state in between, such as a warm start. ``LocalPlanner.follow``
 is called once per control period. The Controller handles what is the same for all local planners and does
 not ask them then: turning in place towards the plan, stopping and turning at the goal, backing out of a
 collision.

@@ -3,10 +3,10 @@
 Life cycle:
 
 1. A layer is constructed with its settings and a LayerContext whenever the costmap is: at start-up, for a new
-   map and when settings change. :meth:`Layer.take_over` may then copy the state of the layer it replaces.
-2. :meth:`Layer.add_observation` receives sensor data as it arrives.
-3. At each update, :meth:`Layer.update` follows the window and returns the cells that may have changed.
-4. :meth:`Layer.apply` writes the layer's costs over those of the layers below, in the cells that changed in
+   map and when settings change. ``Layer.take_over`` may then copy the state of the layer it replaces.
+2. ``Layer.add_observation`` receives sensor data as it arrives.
+3. At each update, ``Layer.update`` follows the window and returns the cells that may have changed.
+4. ``Layer.apply`` writes the layer's costs over those of the layers below, in the cells that changed in
    any layer.
 
 Order, from below: static map, obstacles, zones, plugin layers, inflation.

@@ -113,7 +113,7 @@ class RecoveryStart:
 
 @dataclass(frozen=True, eq=False)
 class Decision:
-    """Output of :meth:`Navigator.tick`.
+    """Output of ``Navigator.tick``.
 
     Attributes:
         status: State of the Navigator.

@@ -31,7 +31,7 @@ from planar.geometry.pose import check_pose
 class Navigator:
     """Drives a differential-drive robot to one goal at a time without collisions.
 
-    Call :meth:`tick` once a control period. The Navigator plans on the global costmap, follows the plan on
+    Call ``tick`` once a control period. The Navigator plans on the global costmap, follows the plan on
     the local costmap and runs the recovery behaviours in order when either fails, as move_base does
     (``state_machine.py``).
 

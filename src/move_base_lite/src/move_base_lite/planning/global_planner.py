@@ -1,7 +1,7 @@
 """The contract of global planners: a path through a costmap.
 
 Life cycle: a global planner is constructed with its settings, and again whenever they change.
-:meth:`~GlobalPlanner.plan` may be called at any time, also from positions other than the robot's; calls are
+``GlobalPlanner.plan`` may be called at any time, also from positions other than the robot's; calls are
 independent of each other.
 
 To add one: a module with settings (a subclass of PlannerSettings), a class and its Plugin, and a line in

@@ -1,7 +1,7 @@
 """Contract of recovery behaviours (nav_core: RecoveryBehavior).
 
 Life cycle: an object is one run of a behaviour. It is constructed with its settings when its turn comes;
-:meth:`RecoveryBehavior.step` is called once a control period until it returns None; then the object is
+``RecoveryBehavior.step`` is called once a control period until it returns None; then the object is
 dropped. A cancelled or new goal drops it at once, without another call.
 
 To add a behaviour to this package, write a module with settings, a class and its Plugin, and add it to

@@ -1,7 +1,7 @@
 """The critics of dwa_local_planner: numba kernels that score a trajectory.
 
 A critic takes the trajectory's poses (N, 3) and the DwaScene and returns a cost, inf for an invalid
-trajectory. :func:`scores_of` sums the weighted costs; a new critic needs a weight and a term there.
+trajectory. ``scores_of`` sums the weighted costs; a new critic needs a weight and a term there.
 """
 
 import math

@@ -52,7 +52,7 @@ class NavigatorInputs:
 
 
 class SensorBridge:
-    """Stores messages in callbacks; :meth:`inputs` combines them at a tick.
+    """Stores messages in callbacks; ``inputs`` combines them at a tick.
 
     Args:
         settings: Frames, transform tolerances and observation sources.
