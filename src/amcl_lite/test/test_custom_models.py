@@ -1,4 +1,4 @@
-"""Models of somebody's own are held to their contracts, and what they do wrong is told in their names."""
+"""User-defined models are checked against their contracts, and errors name the model."""
 
 import numpy as np
 import pytest
@@ -46,13 +46,13 @@ class Scribbles(Even):
         return np.zeros(len(poses))
 
 
-class TellsNothing:
+class HasNoMethods:
     def __init__(self, grid, settings):
         pass
 
 
 class Exact:
-    """Odometry does not err."""
+    """Odometry without noise."""
 
     def __init__(self, settings):
         pass
@@ -124,15 +124,15 @@ def test_it_takes_the_place_of_the_others():
     ("kind", "fault"),
     [
         (Raises, "raised ZeroDivisionError: division by zero"),
-        (AnswersNan, "gave no 200 finite numbers"),
-        (AnswersLess, "gave no 200 finite numbers"),
+        (AnswersNan, "returned no 200 finite numbers"),
+        (AnswersLess, "returned no 200 finite numbers"),
         (CannotBeMade, "raised OSError: no weights.npz"),
     ],
 )
-def test_what_goes_wrong_in_it_is_told_in_its_name(kind, fault):
-    with pytest.raises(LocalizationError) as told:
+def test_an_error_of_a_sensor_model_names_it(kind, fault):
+    with pytest.raises(LocalizationError) as raised:
         updated(kind)
-    assert str(told.value) == f"{named(kind)} {fault}"
+    assert str(raised.value) == f"{named(kind)} {fault}"
 
 
 def test_it_cannot_move_the_particles():
@@ -159,15 +159,15 @@ def test_a_motion_model_takes_the_place_of_the_others():
     ("kind", "fault"),
     [
         (StopsOnce, "raised ValueError: not now"),
-        (GoesFar, "gave no 200 by 3 finite numbers up to 1e+06"),
-        (LosesSome, "gave no 200 by 3 finite numbers"),
+        (GoesFar, "returned no 200 by 3 finite numbers up to 1e+06"),
+        (LosesSome, "returned no 200 by 3 finite numbers"),
     ],
 )
-def test_what_goes_wrong_in_a_motion_model_is_told_in_its_name(kind, fault, monkeypatch):
+def test_an_error_of_a_motion_model_names_it(kind, fault, monkeypatch):
     monkeypatch.setattr(StopsOnce, "asked", 0)
-    with pytest.raises(LocalizationError) as told:
+    with pytest.raises(LocalizationError) as raised:
         standing(kind).update(Pose2(0.5, 0.0), SCAN)
-    assert str(told.value).startswith(f"{named(kind)} {fault}")
+    assert str(raised.value).startswith(f"{named(kind)} {fault}")
 
 
 def test_a_motion_that_could_not_be_followed_is_followed_at_the_next_scan(monkeypatch):
@@ -184,7 +184,7 @@ def test_a_motion_that_could_not_be_followed_is_followed_at_the_next_scan(monkey
     ("name", "reason"),
     [
         ("no_such.module/Model", "there is no module no_such on Python's path"),
-        ("own.models/TellsNothing", "is no sensor model: it has no log_likelihoods(poses, beams)"),
+        ("own.models/HasNoMethods", "is no sensor model: it has no log_likelihoods(poses, beams)"),
         ("Model", "sensor_plugin must be like my_package.my_module/MyModel, got 'Model'"),
     ],
 )

@@ -135,7 +135,7 @@ def test_a_wrong_start_is_pulled_in():
     assert tracking_errors(toy, localizer, THROUGH_ALL_ROOMS)[-1, 0] < 0.15
 
 
-def test_what_goes_on_after_a_crash_believes_what_was_believed(tmp_path):
+def test_a_localizer_resumes_with_the_saved_belief(tmp_path):
     """Also of two places, between which a mean would lie, and although the robot has driven on since."""
     toy = Toy(START)
     elsewhere = Pose2(2.0, 1.0, 0.4)
@@ -210,8 +210,8 @@ def test_a_kidnapped_robot_knows_that_it_is_lost_and_is_found_again():
     toy.base_in_map = Pose2(8.0, 2.0, math.pi)
     tracking_errors(toy, localizer, way((1.5, 0.0)))
     assert localizer.is_lost
-    forth_and_back = way((1.5, 3.14), (3.0, 3.14), (3.0, 3.14))
-    assert tracking_errors(toy, localizer, forth_and_back)[-20:, 0].max() < 0.1
+    back_and_forth = way((1.5, 3.14), (3.0, 3.14), (3.0, 3.14))
+    assert tracking_errors(toy, localizer, back_and_forth)[-20:, 0].max() < 0.1
     assert not localizer.is_lost
 
 
@@ -270,7 +270,7 @@ def test_new_settings_before_the_first_scan_hold_for_the_particles_at_once():
         assert localizer.particles.size == count
 
 
-def test_what_was_told_since_the_last_estimate_outlasts_new_settings():
+def test_a_pose_set_since_the_last_estimate_survives_new_settings():
     toy = Toy(START)
     localizer = started(toy)
     localizer.set_pose(Pose2(2.0, 1.0), np.diag((0.01, 0.01, 0.01)))
@@ -296,7 +296,7 @@ def test_odometry_that_jumps_beyond_all_measure_leaves_the_robot_within_reach():
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_wheels_that_err_by_a_tenth_are_followed(seed):
+def test_an_odometry_bias_of_ten_percent_is_followed(seed):
     toy = Toy(START, seed, slip=0.1, aside=0.04)
     assert tracking_errors(toy, started(toy, seed=seed), THROUGH_ALL_ROOMS)[:, 0].max() < 0.2
 
@@ -325,8 +325,8 @@ def test_a_start_that_is_wrong_by_metres_is_found_out():
     localizer = Localizer(toy.grid, TURTLEBOT, np.random.default_rng(0))
     localizer.set_pose(toy.base_in_map @ Pose2(-2.5, 1.5, 1.0), np.diag((0.25, 0.25, 0.07)))
     localizer.update(toy.base_in_odom, toy.scan())
-    forth_and_back = way((1.5, 3.14), (3.0, 3.14), (3.0, 3.14))
-    assert tracking_errors(toy, localizer, forth_and_back)[-20:, 0].max() < 0.1
+    back_and_forth = way((1.5, 3.14), (3.0, 3.14), (3.0, 3.14))
+    assert tracking_errors(toy, localizer, back_and_forth)[-20:, 0].max() < 0.1
     assert not localizer.is_lost
 
 

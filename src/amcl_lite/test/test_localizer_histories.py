@@ -160,7 +160,7 @@ class LocalizerHistories(RuleBasedStateMachine):
         assert self.localizer.particles is before
 
     @rule()
-    def somebody_carries_the_robot(self):
+    def carry_the_robot(self):
         self.base_in_map = Pose2(3.0, 0.5, -1.0) if self.base_in_map.x < 2.0 else START
 
     @rule(
@@ -169,7 +169,7 @@ class LocalizerHistories(RuleBasedStateMachine):
         ),
         name=st.sampled_from(sorted(COVARIANCES)),
     )
-    def somebody_says_where_it_is(self, pose, name):
+    def set_the_pose(self, pose, name):
         pose, before = self.base_in_map if pose == "right" else pose, self.localizer.particles
         if name not in SENSELESS:
             self.localizer.set_pose(pose, COVARIANCES[name])
@@ -179,7 +179,7 @@ class LocalizerHistories(RuleBasedStateMachine):
         assert self.localizer.particles is before
 
     @rule()
-    def somebody_asks_for_global_localization(self):
+    def request_global_localization(self):
         self.localizer.start_global_localization()
         assert self.localizer.is_lost
 
@@ -205,7 +205,7 @@ class LocalizerHistories(RuleBasedStateMachine):
         self.set_map(self.map)
 
     @rule()
-    def it_comes_back_with_what_it_believed(self):
+    def resume_from_the_belief(self):
         belief = self.localizer.belief
         self.the_node_dies_and_comes_back()
         if belief is not None:
@@ -225,7 +225,7 @@ class LocalizerHistories(RuleBasedStateMachine):
         assert 1.0 - 1e-9 <= particles.effective_size <= particles.size + 1e-9
 
     @invariant()
-    def what_is_told_is_finite(self):
+    def estimates_are_finite(self):
         odom_in_map, quality = self.localizer.odom_in_map, self.localizer.quality
         assert odom_in_map is None or odom_in_map.is_finite()
         if quality is not None:
@@ -234,7 +234,7 @@ class LocalizerHistories(RuleBasedStateMachine):
             assert 0.0 <= quality.through <= 1.0
 
     def teardown(self):
-        """Whatever was, the robot is found when it is told where it is and nothing more goes wrong."""
+        """After any history, the robot is localized once its pose is set and no further faults occur."""
         if not hasattr(self, "localizer"):
             return
         if self.map != "room":

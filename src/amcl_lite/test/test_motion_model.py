@@ -75,7 +75,7 @@ def test_driving_backwards_is_as_good_as_driving_forwards():
     assert backwards.std(axis=0) == pytest.approx(forwards.std(axis=0), rel=0.05)
 
 
-def test_omni_corrected_spreads_as_the_book_says_and_omni_as_amcl_does():
+def test_omni_corrected_spreads_as_in_the_book_and_omni_as_in_amcl():
     alphas = {
         "rotation_from_rotation": 0.1,
         "rotation_from_translation": 0.2,

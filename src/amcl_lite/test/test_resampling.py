@@ -34,7 +34,7 @@ def rng():
         (100, 0.01, 0.99, 5658),
     ],
 )
-def test_kld_sampling_needs_as_many_particles_as_fox_says(bins, error, z, needed):
+def test_kld_sampling_needs_the_number_of_particles_given_by_fox(bins, error, z, needed):
     k = bins - 1
     formula = k / (2 * error) * (1 - 2 / (9 * k) + z * math.sqrt(2 / (9 * k))) ** 3
     assert particles_needed(bins, 1, 10**6, error, z) == math.ceil(formula)

@@ -56,7 +56,7 @@ def test_an_end_outside_the_map_counts_as_far_from_everything():
     assert weight[0] == pytest.approx(math.log(p_hit(SETTINGS.likelihood_max_distance)), rel=1e-6)
 
 
-def test_beams_without_return_say_nothing_to_the_likelihood_field():
+def test_beams_without_return_do_not_change_the_likelihood_field():
     assert log_likelihood_field(HERE, beams(MAX_RANGE, MAX_RANGE), field(), SETTINGS)[0] == 0.0
 
 

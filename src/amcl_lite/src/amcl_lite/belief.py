@@ -1,4 +1,4 @@
-"""What a Localizer believes, kept in a file for one that goes on after it."""
+"""The belief of a Localizer (its particles), and files from which another Localizer resumes."""
 
 import io
 from dataclasses import dataclass
@@ -14,9 +14,13 @@ from planar.geometry.limits import MAX_COORDINATE
 
 @dataclass(frozen=True, eq=False)
 class Belief:
-    """``particles``: when odometry had the robot at ``base_in_odom``.
+    """State of a particle filter.
 
-    ``is_lost``: whether scans had not fitted the map for some time.
+    Attributes:
+        particles: Particles at the odometry pose ``base_in_odom``.
+        base_in_odom: Odometry pose of the last update.
+        odom_in_map: Pose of the odometry frame in the map.
+        is_lost: Whether the scans contradict the estimate.
     """
 
     particles: ParticleSet
@@ -26,14 +30,14 @@ class Belief:
 
 
 def save_particles(particles: ParticleSet, path) -> None:
-    """Writes particles, whole or not at all. Raises FileWriteError."""
+    """Write particles atomically. Raises FileWriteError."""
     file = io.BytesIO()
     np.save(file, np.column_stack((particles.poses, particles.weights)))
     write_atomically(path, file.getvalue())
 
 
 def load_particles(path) -> ParticleSet:
-    """Reads what ``save_particles`` wrote. Raises LocalizationError."""
+    """Read particles that ``save_particles`` has written. Raises LocalizationError."""
     try:
         table = read_array(path)
     except (OSError, ValueError) as error:
@@ -45,5 +49,7 @@ def load_particles(path) -> ParticleSet:
         (np.abs(poses) <= MAX_COORDINATE).all() and (weights >= 0.0).all() and abs(weights.sum() - 1.0) < 1e-6
     )
     if not is_sound:
-        raise LocalizationError(f"{path}: particles that mean nothing")
+        raise LocalizationError(
+            f"{path}: malformed particles: poses out of range, or weights that do not sum to 1"
+        )
     return ParticleSet(poses, weights)

@@ -1,6 +1,6 @@
-"""What models of somebody's own have to do: ``python3 -m amcl_lite.check NAME``.
+"""Contract checks of user-defined sensor and motion models: ``python3 -m amcl_lite.check NAME``.
 
-Each check is given settings that choose a model.
+Each check receives settings that select a model.
 """
 
 import sys
@@ -21,19 +21,19 @@ ROOM = grid_from_picture("##########\n#........#\n#........#\n#....#...#\n#....#
 GRID = OccupancyGrid(np.kron(ROOM.cells, np.ones((10, 10), np.int8)), 0.05)
 TRUE_POSE = Pose2(1.2, 1.6, 0.4)
 ANGLES, RANGE_MAX = np.linspace(-np.pi, np.pi, 90, endpoint=False), 10.0
-# Odometry's way, and how far particles may be off it on average, m and rad.
+# Motion of the odometry, and the largest mean deviation of the particles from it [m, rad].
 MOTION_STEP, MAX_POSITION_BIAS, MAX_HEADING_BIAS = Pose2(0.5, 0.1, 0.4), 0.1, 0.1
 
 
 def gives_finite_log_likelihoods(settings: LocalizerSettings) -> None:
-    """It says how likely a scan is at each pose, in the map or out of it, whatever the scan shows."""
+    """It returns finite log-likelihoods for any scan, at poses inside and outside of the map."""
     poses = np.array([TRUE_POSE.as_array(), [0.0, 0.0, 0.0], [-50.0, 900.0, 1.0]])
     for ranges in (_ranges(), np.full(len(ANGLES), np.inf), np.full(len(ANGLES), np.nan)):
         _log_likelihoods(settings, poses, _beams(ranges, settings))
 
 
 def prefers_true_pose(settings: LocalizerSettings) -> None:
-    """A scan is likelier where it was made than 0.5 m or half a radian beside."""
+    """A scan is more likely at its true pose than at offsets of 0.5 m or 0.5 rad."""
     beside = [Pose2(x, y, yaw) for x, y, yaw in np.vstack([np.eye(3), -np.eye(3)]) * 0.5]
     poses = np.array([TRUE_POSE.as_array(), *((TRUE_POSE @ step).as_array() for step in beside)])
     log_likelihoods = _log_likelihoods(settings, poses, _beams(_ranges(), settings))
@@ -45,47 +45,47 @@ def prefers_true_pose(settings: LocalizerSettings) -> None:
 
 
 def is_deterministic(settings: LocalizerSettings) -> None:
-    """The same calls give the same answers."""
+    """Equal calls return equal results."""
     beams = _beams(_ranges(), settings)
     first, second = (_log_likelihoods(settings, _poses_nearby(), beams) for _ in range(2))
-    expect(np.array_equal(first, second), "another likelihood of the same scan")
+    expect(np.array_equal(first, second), "a different likelihood of the same scan")
 
 
 def leaves_inputs_unchanged(settings: LocalizerSettings) -> None:
-    """What it is given stays as it was."""
+    """It does not modify its inputs."""
     beams, cells = _beams(_ranges(), settings), GRID.cells.copy()
     before = beams.ranges.copy(), beams.directions.copy(), beams.ends_xy.copy()
     _log_likelihoods(settings, _poses_nearby(), beams)
     for array, as_it_was in zip((beams.ranges, beams.directions, beams.ends_xy), before):
-        expect(np.array_equal(array, as_it_was), "the beams are others after the call")
-    expect(np.array_equal(GRID.cells, cells), "the map is another after the call")
+        expect(np.array_equal(array, as_it_was), "the call modified the beams")
+    expect(np.array_equal(GRID.cells, cells), "the call modified the map")
 
 
 def follows_odometry(settings: LocalizerSettings) -> None:
-    """On average particles go where odometry went, each the way that it looks."""
+    """The mean motion of the particles is that of the odometry, relative to each particle's heading."""
     before = Pose2(7.0, -3.0, 2.0)
     for yaw in (0.0, 1.5, -3.0):
         start = Pose2(1.0, 2.0, yaw)
         poses = np.tile(start.as_array(), (2000, 1))
         now = motion_model_of(settings).moved(poses, before, before @ MOTION_STEP, np.random.default_rng(0))
-        meant = start @ MOTION_STEP
-        off = np.hypot(*(now[:, :2].mean(axis=0) - (meant.x, meant.y)))
+        expected = start @ MOTION_STEP
+        off = np.hypot(*(now[:, :2].mean(axis=0) - (expected.x, expected.y)))
         expect(
             off <= MAX_POSITION_BIAS, f"{off:.2f} m off after {np.hypot(MOTION_STEP.x, MOTION_STEP.y):.2f} m"
         )
-        turned = abs(np.mean([wrap(each - meant.yaw) for each in now[:, 2].tolist()]))
+        turned = abs(np.mean([wrap(each - expected.yaw) for each in now[:, 2].tolist()]))
         expect(turned <= MAX_HEADING_BIAS, f"{turned:.2f} rad off after a turn of {MOTION_STEP.yaw:g} rad")
 
 
 def uses_only_given_rng(settings: LocalizerSettings) -> None:
-    """All chance comes from rng: the same seeds give the same answers."""
+    """All randomness comes from rng: equal seeds give equal results."""
     first, second = (
         motion_model_of(settings).moved(
             _poses_nearby(), TRUE_POSE, TRUE_POSE @ MOTION_STEP, np.random.default_rng(3)
         )
         for _ in range(2)
     )
-    expect(np.array_equal(first, second), "other poses with the same seed")
+    expect(np.array_equal(first, second), "different poses with the same seed")
 
 
 def _ranges() -> np.ndarray:

@@ -40,13 +40,11 @@ def _check_plugins(settings: "LocalizerSettings") -> None:
 
 @dataclass(frozen=True)
 class LocalizerSettings:
-    """What the particle filter works with; metres and radians."""
+    """Parameters of the particle filter and its models; metres and radians."""
 
-    min_particles: int = parameter(
-        100, "fewest particles (KLD-sampling's floor)", bounds=Interval(1), dynamic=1000
-    )
+    min_particles: int = parameter(100, "smallest number of particles", bounds=Interval(1), dynamic=1000)
     max_particles: int = parameter(
-        5000, "most particles, and how many a new start is made of", bounds=Interval(1), dynamic=10000
+        5000, "largest number of particles, and the number after a start", bounds=Interval(1), dynamic=10000
     )
     kld_error: float = parameter(
         0.01,
@@ -57,14 +55,14 @@ class LocalizerSettings:
     )
     kld_z: float = parameter(
         0.99,
-        "probability of an error below kld_err; from 1 on: its normal quantile",
+        "probability that the error is below kld_err; values from 1 on are the normal quantile",
         bounds=Interval(0.0),
         dynamic=1.0,
     )
     motion_model: str = parameter(
-        "diff", "how odometry errs", name="odom_model_type", choices=MOTION_MODELS, dynamic=True
+        "diff", "motion model of the odometry", name="odom_model_type", choices=MOTION_MODELS, dynamic=True
     )
-    motion_plugin: str = parameter("", "your own model, package.module/Model, for odom_model_type")
+    motion_plugin: str = parameter("", "user-defined model, package.module/Model, instead of odom_model_type")
     rotation_from_rotation: float = parameter(
         0.2, "rotation noise caused by rotation", bounds=Interval(0.0), name="odom_alpha1", dynamic=10.0
     )
@@ -156,7 +154,7 @@ class LocalizerSettings:
     )
     likelihood_max_distance: float = parameter(
         2.0,
-        "largest distance to an obstacle that is told apart",
+        "distance to an obstacle at which the likelihood field is truncated",
         "m",
         Interval(0.0),
         name="laser_likelihood_max_dist",
@@ -238,7 +236,7 @@ class LocalizerSettings:
 
     @property
     def kld_quantile(self) -> float:
-        """The z of KLD-sampling: the normal quantile of ``kld_z``; amcl takes ``kld_z`` itself for z."""
+        """The z of KLD-sampling: the normal quantile of ``kld_z``; amcl uses ``kld_z`` itself as z."""
         if self.strict_compat or self.kld_z >= 1.0:
             return self.kld_z
         return NormalDist().inv_cdf(max(self.kld_z, 1e-9))
@@ -246,13 +244,13 @@ class LocalizerSettings:
 
 @dataclass(frozen=True)
 class NodeSettings(LocalizerSettings):
-    """What the node needs besides."""
+    """Further parameters of the node."""
 
     odom_frame: str = parameter("odom", "frame of the odometry", name="odom_frame_id", dynamic=True)
     base_frame: str = parameter("base_link", "frame of the robot", name="base_frame_id", dynamic=True)
     map_frame: str = parameter("map", "frame of the map", name="global_frame_id", dynamic=True)
     use_map_topic: bool = parameter(
-        False, "take the map from the topic map, not from the service static_map", dynamic=True
+        False, "subscribe to the topic map instead of calling the service static_map", dynamic=True
     )
     first_map_only: bool = parameter(False, "ignore all but the first map on the topic", dynamic=True)
     gui_publish_rate: float = parameter(
@@ -260,7 +258,7 @@ class NodeSettings(LocalizerSettings):
     )
     save_pose_rate: float = parameter(
         0.5,
-        "how often the pose goes to the parameter server; 0 or less: never",
+        "rate at which the pose is saved to the parameter server; 0 or less: never",
         "Hz",
         Interval(-1.0),
         dynamic=10.0,
@@ -279,27 +277,25 @@ class NodeSettings(LocalizerSettings):
     std_warn_level_y: float = parameter(0.2, "diagnostics warn above this", "m", Interval(0.0))
     std_warn_level_yaw: float = parameter(0.1, "diagnostics warn above this", "rad", Interval(0.0))
     bag_scan_period: float = parameter(-1.0, "pause between scans with --run-from-bag; -1: none", "s")
-    seed: int = parameter(
-        0, "of all chance; the same seed gives the same draws; -1: from the system", bounds=Interval(-1)
-    )
+    seed: int = parameter(0, "seed of all random numbers; -1: from the operating system", bounds=Interval(-1))
 
 
 @dataclass(frozen=True)
 class InitialPose:
-    """Where a filter starts when a map arrives; read anew at each map, written by pose saving."""
+    """Initial pose and covariance; read for each new map, written when the pose is saved."""
 
-    x: float = parameter(0.0, "where the filter starts, x", "m", name="initial_pose_x")
-    y: float = parameter(0.0, "where the filter starts, y", "m", name="initial_pose_y")
-    yaw: float = parameter(0.0, "where the filter starts, yaw", "rad", name="initial_pose_a")
+    x: float = parameter(0.0, "initial pose, x", "m", name="initial_pose_x")
+    y: float = parameter(0.0, "initial pose, y", "m", name="initial_pose_y")
+    yaw: float = parameter(0.0, "initial pose, yaw", "rad", name="initial_pose_a")
     covariance_xx: float = parameter(
-        0.25, "how unsure that is, variance of x", "m^2", Interval(0.0), name="initial_cov_xx"
+        0.25, "initial variance of x", "m^2", Interval(0.0), name="initial_cov_xx"
     )
     covariance_yy: float = parameter(
-        0.25, "how unsure that is, variance of y", "m^2", Interval(0.0), name="initial_cov_yy"
+        0.25, "initial variance of y", "m^2", Interval(0.0), name="initial_cov_yy"
     )
     covariance_aa: float = parameter(
         (math.pi / 12.0) ** 2,
-        "how unsure that is, variance of yaw",
+        "initial variance of yaw",
         "rad^2",
         Interval(0.0),
         name="initial_cov_aa",
@@ -314,7 +310,7 @@ class InitialPose:
 
     @property
     def covariance(self) -> np.ndarray:
-        """(3, 3), diagonal."""
+        """Diagonal covariance (3, 3) [m^2, rad^2]."""
         return np.diag((self.covariance_xx, self.covariance_yy, self.covariance_aa))
 
 
@@ -323,13 +319,13 @@ CONFIG_FILES = {
         "",
         NodeSettings,
         InitialPose,
-        about="Every parameter of amcl_lite with its default: the official amcl's, and a few of its own.",
+        about="All parameters of amcl_lite with their defaults: those of amcl, and additional ones.",
     )
 }
 
 
 def settings_warnings(settings: LocalizerSettings) -> List[str]:
-    """What a user may not expect of these settings, in sentences."""
+    """Return warnings about settings with unexpected effects."""
     lines = []
     if settings.beams < 2:
         lines.append("laser_max_beams is below 2: scans are not used, the robot follows its odometry")

@@ -1,7 +1,7 @@
-"""What can go wrong in localization."""
+"""Errors of localization."""
 
 from planar import PlanarError
 
 
 class LocalizationError(PlanarError):
-    """Localization is impossible with what it was given."""
+    """The inputs do not allow localization."""

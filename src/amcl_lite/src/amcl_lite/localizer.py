@@ -1,4 +1,4 @@
-"""The facade: a robot with odometry and a laser is localized in a known map."""
+"""The facade: Monte Carlo localization of a robot with odometry and a laser in a known map."""
 
 from dataclasses import dataclass
 from functools import partial
@@ -29,18 +29,20 @@ from amcl_lite.sensor.scan_matching import match_scan
 from planar import OccupancyGrid, Pose2, Scan, grid_from_picture
 from planar.geometry.limits import MAX_COORDINATE, is_within
 
-# Of the particles of a lost robot, this share is put where the scan fits the map.
+# Share of the particles of a lost robot that is drawn at poses where the scan fits the map.
 _RECOVERY_SHARE = 0.3
-# Of those of one that is not, and whose scan fits, this share is put about where scan matching puts it: those
-# drawn by weight lag behind where odometry errs always alike.
+# Share that is drawn around the scan matching result if the scan fits and the robot is not lost: particles
+# drawn by weight alone lag behind a constant odometry bias.
 _MATCHED_SHARE = 0.1
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """Where the robot is, and the covariance (3, 3) of the whole filter, in m^2 and rad^2.
+    """An estimate of the robot's pose.
 
-    The pose is the mean of the best cluster, improved by scan matching if the settings say so.
+    Attributes:
+        base_in_map: Mean of the cluster of largest weight, refined by scan matching with ``refine_pose``.
+        covariance: Covariance (3, 3) of x, y, yaw over all particles [m^2, rad^2].
     """
 
     base_in_map: Pose2
@@ -48,18 +50,25 @@ class Estimate:
 
 
 class Localizer:
-    """Adaptive Monte-Carlo localization (Probabilistic Robotics, tables 8.2 to 8.4), behaving as amcl does.
+    """Adaptive Monte Carlo localization (Probabilistic Robotics, tables 8.2 to 8.4) with amcl's behaviour.
 
-    Particles are moved by odometry, weighed by how well the scan fits the map at each, and drawn anew by
-    weight, as many as their spread requires. When scans fit worse than they used to, some are drawn from all
-    free space. Work is done only when the robot has moved; the first scan after a start always counts.
+    Each update predicts the particles with the motion model, weights them with the sensor model, and
+    resamples them with KLD-sampling; random particles are added while the short-term likelihood is below the
+    long-term one. Updates happen only after the robot has moved; the first scan after a start is always used.
 
-    Beyond amcl it judges how well each scan fits the map at its estimate, and when the robot is lost, looks
-    for places where the scan fits and puts particles there.
+    Beyond amcl, the fit of each scan at the estimate is evaluated. While the robot is lost, particles are
+    drawn at poses at which the scan fits the map.
+
+    Args:
+        grid: The map.
+        settings: Parameters of the filter and of its models.
+        rng: Source of all randomness.
+
+    Raises:
+        LocalizationError: If the map has no free cells.
     """
 
     def __init__(self, grid: OccupancyGrid, settings: LocalizerSettings, rng: np.random.Generator):
-        """Starts at the default initial pose. Raises LocalizationError for a map without free cells."""
         self._grid = grid
         self._rng = rng
         self._free_space = FreeSpace(grid)
@@ -82,12 +91,12 @@ class Localizer:
 
     @property
     def odom_in_map(self) -> Optional[Pose2]:
-        """Where the odometry frame lies in the map; None before the first estimate."""
+        """Pose of the odometry frame in the map; None before the first estimate."""
         return self._odom_in_map
 
     @property
     def belief(self) -> Optional[Belief]:
-        """What another one may go on from; None while there is no estimate since the last start."""
+        """State from which another Localizer can resume; None before the first estimate after a start."""
         updated_at = self._update_policy.updated_at
         if self._updates == 0 or updated_at is None or self._odom_in_map is None:
             return None
@@ -95,29 +104,29 @@ class Localizer:
 
     @property
     def updates(self) -> int:
-        """How many scans have been worked into the filter since the last start."""
+        """Number of updates since the last start."""
         return self._updates
 
     @property
     def quality(self) -> Optional[ScanQuality]:
-        """How well the last scan fits the map at the estimate; None before the first estimate."""
+        """Fit of the last scan at the estimate; None before the first estimate."""
         return self._quality
 
     @property
     def is_lost(self) -> bool:
-        """Whether scans have not fitted the map for some time; also after ``scatter``, until they do."""
+        """Whether the scans contradict the estimate, or global localization has not converged yet."""
         return self._detector.is_lost
 
     @property
     def likelihood_grid(self) -> OccupancyGrid:
-        """The likelihood field as a grid of 0 (far from any obstacle) to 100 (on one), to look at."""
+        """The likelihood field for display: 100 on obstacles, 0 far from them."""
         fits = np.rint(100.0 * self._likelihood.field.fit[1:-1, 1:-1]).astype(np.int8)
         return OccupancyGrid(fits, self._grid.resolution, self._grid.origin)
 
     def reconfigure(self, settings: LocalizerSettings) -> None:
-        """Goes on with other settings, from a new start around the last estimate (as amcl does).
+        """Change the settings and restart the filter around the last estimate, as amcl does.
 
-        If no scan has counted since the last start, that is made again.
+        Without an update since the last start, that start is repeated.
         """
         self._configure(settings)
         updated_at = self._update_policy.updated_at
@@ -128,40 +137,57 @@ class Localizer:
         self._update_policy = UpdatePolicy(updated_at)
 
     def set_pose(self, base_in_map: Pose2, pose_covariance: np.ndarray) -> None:
-        """Starts anew around a pose; ``pose_covariance``: (3, 3), m^2 and rad^2."""
+        """Restart the filter with a Gaussian distribution.
+
+        Args:
+            base_in_map: Mean pose.
+            pose_covariance: Covariance (3, 3) of x, y, yaw [m^2, rad^2].
+
+        Raises:
+            LocalizationError: If a number is not finite or out of range.
+        """
         if not is_valid_initial_pose(base_in_map, pose_covariance):
-            raise LocalizationError("a pose to start from must be finite, and where a robot can be")
+            raise LocalizationError("an initial pose and its covariance must be finite and within range")
         self._start_filter = partial(self._start_around, base_in_map, np.array(pose_covariance))
         self._start_filter()
 
     def restore(self, belief: Belief) -> None:
-        """Starts with what another one believed; odometry has gone on since."""
+        """Resume from the state of another Localizer; odometry has continued since."""
         self._start_filter = partial(self._start_with, belief)
         self._start_filter()
         self._update_policy = UpdatePolicy(belief.base_in_odom)
         self._odom_in_map = belief.odom_in_map
 
     def start_global_localization(self) -> None:
-        """Starts anew with particles all over the free space: global localization."""
+        """Start global localization: distribute the particles uniformly over the free space."""
         self._start_filter = self._start_anywhere
         self._start_filter()
 
     def request_update(self) -> None:
-        """Makes the next scan count even if the robot stands still."""
+        """Use the next scan for an update even if the robot has not moved."""
         self._update_policy.request()
 
     def update(self, base_in_odom: Pose2, scan: Scan, laser: str = "") -> Optional[Estimate]:
-        """Takes in a scan made at ``base_in_odom``; returns an estimate when there is a new one.
+        """Process a scan.
 
-        ``laser`` tells several lasers apart. Raises LocalizationError for a scan that cannot be used.
+        Args:
+            base_in_odom: Odometry pose at the stamp of the scan.
+            scan: The scan, with the pose of the laser in the base frame.
+            laser: Name of the laser; each laser has its own update condition.
+
+        Returns:
+            The new estimate, or None if the scan does not lead to one.
+
+        Raises:
+            LocalizationError: If the odometry or the limits of the scan are invalid.
         """
         if not base_in_odom.is_in_range():
-            raise LocalizationError("odometry must tell where a robot can be")
+            raise LocalizationError("the odometry pose is not finite or out of range")
         beams = evenly_spaced_beams(scan, self._settings)
         self._base_in_odom = base_in_odom
         estimate = None
         if self._update_policy.is_due(base_in_odom, laser, scan.stamp, self._settings):
-            self._move(base_in_odom)  # first, as a motion that cannot be followed is not to be lost
+            self._move(base_in_odom)  # first: a motion whose prediction fails is repeated with the next scan
             self._update_policy.record_update(base_in_odom, laser)
             self._weigh(beams)
             is_resampled = self._resample_if_due(beams)
@@ -208,23 +234,23 @@ class Localizer:
         self._updates += 1
 
     def _resample_if_due(self, beams: Beams) -> bool:
-        """Draws anew every ``resample_interval`` updates."""
+        """Resample every ``resample_interval`` updates."""
         is_due = self._updates % self._settings.resample_interval == 0
         if is_due and self._filter.should_resample(self._settings):
             self._filter.resample(self._settings, *self._injected_poses(beams))
         return is_due
 
     def _injected_poses(self, beams: Beams) -> Tuple[float, DrawPoses]:
-        """Which share of the particles comes from elsewhere, and from where (augmented and mixture MCL)."""
+        """Return the share of injected particles and their distribution (augmented and mixture MCL)."""
         if self._settings.recover_when_lost and self.is_lost:
             places = find_hypotheses(beams, self._likelihood.field, self._grid, self._free_space, self._rng)
             if len(places) > 0:
                 return _RECOVERY_SHARE, places.draw
-        fallen, spread = self._filter.likelihood_drop(), self._matched_spread
+        drop, spread = self._filter.likelihood_drop(), self._matched_spread
         confirms_pose = self._quality is not None and self._quality.confirms_pose
-        if fallen == 0.0 and confirms_pose and self._odom_in_map is not None and spread is not None:
+        if drop == 0.0 and confirms_pose and self._odom_in_map is not None and spread is not None:
             return _MATCHED_SHARE, partial(gaussian_poses, self._odom_in_map @ self._base_in_odom, spread)
-        return fallen, self._free_space.draw
+        return drop, self._free_space.draw
 
     def _estimate(self, base_in_odom: Pose2, scan: Scan) -> Estimate:
         cluster = best_cluster(self.particles)
@@ -246,16 +272,16 @@ class Localizer:
         self._quality = scan_quality(base_in_map, beams, self._likelihood.field, self._grid)
         self._detector.add(self._quality, stamp)
         if self._settings.recover_when_lost and self._quality.contradicts_pose:
-            self._update_policy.request()  # a robot that stands would never find itself
+            self._update_policy.request()  # otherwise a robot at rest would never recover
 
 
 def is_valid_initial_pose(base_in_map: Pose2, covariance: np.ndarray) -> bool:
-    """Whether a Localizer takes this pose, with its covariance (3, 3), to start from."""
+    """Check that a pose and its covariance (3, 3) are finite and within range."""
     return base_in_map.is_in_range() and is_within(MAX_COORDINATE, *np.ravel(covariance))
 
 
 def warm_up(settings: LocalizerSettings) -> None:
-    """Compiles, or loads from the cache, all that an update runs, so that the first scan need not wait."""
+    """Compile the kernels of an update, or load them from the cache, before the first scan."""
     grid = grid_from_picture("####\n#..#\n####")
     scan = Scan(0.0, -1.0, 0.5, np.full(5, 0.5, dtype=np.float32), 0.1, 2.0)
     localizer = Localizer(grid, settings, np.random.default_rng(0))

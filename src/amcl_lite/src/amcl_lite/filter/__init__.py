@@ -1,1 +1,1 @@
-"""Particles: how they start, are moved, weighed and drawn anew, and what they say about the pose."""
+"""Particle filter: initialization, prediction, weighting, resampling and statistics."""

@@ -1,4 +1,4 @@
-"""The histogram of a particle set: bins of 0.5 m x 0.5 m x 10 degrees, kept in a hash table.
+"""The histogram of a particle set: bins of 0.5 m x 0.5 m x 10 degrees, stored in a hash table.
 
 KLD-sampling counts the bins that hold particles; bins that touch make up a cluster.
 """

@@ -14,7 +14,7 @@ from planar import Pose2
 
 
 class ParticleFilter:
-    """Particles that follow odometry and scans (Probabilistic Robotics, tables 8.2 and 8.3)."""
+    """Particle filter with augmented MCL (Probabilistic Robotics, tables 8.2 and 8.3)."""
 
     def __init__(self, particles: ParticleSet, rng: np.random.Generator):
         self.particles = particles
@@ -23,32 +23,32 @@ class ParticleFilter:
         self._likelihood = _LikelihoodTrend()
 
     def move(self, base_before: Pose2, base_now: Pose2, motion: MotionModel) -> None:
-        """Moves the particles on as the odometry moved."""
+        """Predict the particles from the motion of the odometry."""
         poses = motion.moved(self.particles.poses, base_before, base_now, self._rng)
         self.particles = ParticleSet(clamped_positions(poses), self.particles.weights)
 
     def weigh(self, log_likelihoods: np.ndarray, settings: LocalizerSettings) -> None:
-        """Multiplies the weights by likelihoods, given as logarithms (N,)."""
+        """Multiply the weights by likelihoods, given as natural logarithms (N,)."""
         weights, likelihood = _weighted(self.particles.weights, log_likelihoods)
         self.particles = ParticleSet(self.particles.poses, weights)
         self._likelihood.add(likelihood, settings)
 
     def should_resample(self, settings: LocalizerSettings) -> bool:
-        """Whether it is always done, or the weights have become uneven."""
+        """Whether resampling is due: always, or with selective resampling when N_eff is below N / 2."""
         return not settings.selective_resampling or 2.0 * self.particles.effective_size <= self.particles.size
 
     def likelihood_drop(self) -> float:
-        """By how much the likelihood has fallen; if at all, what it was before is forgotten."""
+        """Return the relative drop of the likelihood and, if positive, reset its averages."""
         return self._likelihood.likelihood_drop()
 
     def resample(self, settings: LocalizerSettings, share: float, draw: DrawPoses) -> None:
-        """Draws particles anew by weight, but for a share that comes from ``draw``."""
+        """Resample by weight, with a share of new poses drawn by ``draw``."""
         self.particles = resample(self.particles, settings, share, draw, self._rng)
         self.has_converged = has_converged(self.particles)
 
 
 class _LikelihoodTrend:
-    """Short-term and long-term average of the likelihood, whose ratio tells a lost filter (table 8.3)."""
+    """Short-term and long-term averages of the likelihood; their ratio detects a lost filter (table 8.3)."""
 
     def __init__(self):
         self._slow = self._fast = 0.0
@@ -58,7 +58,7 @@ class _LikelihoodTrend:
         self._fast = _decayed(self._fast, likelihood, settings.recovery_alpha_fast)
 
     def likelihood_drop(self) -> float:
-        """By how much the short-term average has fallen below the other; if at all, both start anew."""
+        """Return the drop of the short-term below the long-term average and, if positive, reset both."""
         if self._fast >= self._slow:
             return 0.0
         share = 1.0 - self._fast / self._slow
@@ -67,15 +67,15 @@ class _LikelihoodTrend:
 
 
 def _decayed(average: float, value: float, alpha: float) -> float:
-    """An exponential average; 0 means that there is none yet."""
+    """Update an exponential average; 0 means that it has no value yet."""
     return value if average == 0.0 else average + alpha * (value - average)
 
 
 @numba.njit(cache=True)
 def _weighted(weights, log_likelihoods):
-    """Weights times likelihoods, made to sum to 1, and what they summed to; no exponential underflows.
+    """Return normalized products of weights and likelihoods, and their sum, without underflow.
 
-    Where a particle without weight is does not matter: it might be the only one that the scan fits.
+    Particles without weight are ignored: the scan may fit only at their poses.
     """
     largest = -np.inf
     for i in range(weights.size):

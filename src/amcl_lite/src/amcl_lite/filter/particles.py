@@ -1,4 +1,4 @@
-"""Sets of weighted particles and how they start."""
+"""Sets of weighted particles and their initial distributions."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,12 @@ from planar.geometry.limits import MAX_COORDINATE
 
 @dataclass(frozen=True, eq=False)
 class ParticleSet:
-    """``poses``: (N, 3) x, y, yaw in the map; ``weights``: (N,), their sum is 1."""
+    """Weighted particles.
+
+    Attributes:
+        poses: (N, 3) x, y, yaw in the map [m, rad].
+        weights: (N,), with sum 1.
+    """
 
     poses: np.ndarray
     weights: np.ndarray
@@ -23,47 +28,47 @@ class ParticleSet:
 
     @property
     def effective_size(self) -> float:
-        """How many equally weighted particles would tell as much (Liu, 1996)."""
+        """Effective sample size (Liu, 1996)."""
         return 1.0 / float(np.sum(self.weights**2))
 
 
 def equally_weighted(poses: np.ndarray) -> ParticleSet:
-    """Particles at ``poses`` (N, 3), all of one weight."""
+    """Return particles of equal weight at ``poses`` (N, 3)."""
     return ParticleSet(poses, np.full(len(poses), 1.0 / len(poses)))
 
 
 def gaussian_particles(
     mean: Pose2, covariance: np.ndarray, count: int, rng: np.random.Generator
 ) -> ParticleSet:
-    """``count`` particles drawn from a normal distribution; see gaussian_poses."""
+    """Draw particles of equal weight from a normal distribution; see gaussian_poses."""
     return equally_weighted(gaussian_poses(mean, covariance, count, rng))
 
 
 def gaussian_poses(mean: Pose2, covariance: np.ndarray, count: int, rng: np.random.Generator) -> np.ndarray:
-    """Poses (count, 3) from a normal distribution; ``covariance``: (3, 3), may be singular."""
+    """Draw poses (count, 3) from a normal distribution with covariance (3, 3), which may be singular."""
     eigenvalues, eigenvectors = np.linalg.eigh(covariance)
     spread = eigenvectors * np.sqrt(np.maximum(eigenvalues, 0.0))
     return clamped_positions(mean.as_array() + rng.standard_normal((count, 3)) @ spread.T)
 
 
 def clamped_positions(poses: np.ndarray) -> np.ndarray:
-    """The poses (N, 3), with those beyond MAX_COORDINATE brought back to there: a robot can be no farther."""
+    """Clamp the positions of poses (N, 3) to MAX_COORDINATE, in place."""
     np.clip(poses[:, :2], -MAX_COORDINATE, MAX_COORDINATE, out=poses[:, :2])
     return poses
 
 
 class FreeSpace:
-    """The free cells of a map, to draw poses from. Raises LocalizationError if there are none."""
+    """The free cells of a map, from which poses are drawn. Raises LocalizationError if there are none."""
 
     def __init__(self, grid: OccupancyGrid):
         self._grid = grid
-        # How many free cells there are up to the end of each row.
+        # Number of free cells up to the end of each row.
         self._counts = np.cumsum(np.count_nonzero(grid.cells == FREE, axis=1))
         if self._counts[-1] == 0:
             raise LocalizationError("the map has no free cell")
 
     def draw(self, count: int, rng: np.random.Generator) -> np.ndarray:
-        """Poses (count, 3), uniform over the free area and all headings."""
+        """Draw poses (count, 3), uniform over the free area and all headings."""
         numbers = rng.integers(self._counts[-1], size=count)
         row_col = _cells_numbered(numbers, self._counts, self._grid.cells, FREE)
         within_cell = rng.uniform(-0.5, 0.5, (count, 2))
@@ -71,7 +76,7 @@ class FreeSpace:
         return np.column_stack((positions_xy, rng.uniform(-np.pi, np.pi, count)))
 
     def contains(self, poses: np.ndarray) -> np.ndarray:
-        """Which of the poses (N, 3) lie in a free cell: bool (N,)."""
+        """Return for poses (N, 3) whether each lies in a free cell: bool (N,)."""
         cells = self._grid.cells_of(poses[:, :2])
         is_free = self._grid.contains(cells)
         is_free[is_free] = self._grid.cells[tuple(cells[is_free].T)] == FREE
@@ -80,7 +85,7 @@ class FreeSpace:
 
 @numba.njit(cache=True)
 def _cells_numbered(numbers, counts, cells, kind):
-    """The cells (N, 2) that have these numbers among the cells of a kind, counted row by row."""
+    """Return the cells (N, 2) with these numbers among the cells of a kind, counted row by row."""
     row_col = np.empty((numbers.size, 2), dtype=np.int64)
     for i in range(numbers.size):
         row = np.searchsorted(counts, numbers[i], side="right")

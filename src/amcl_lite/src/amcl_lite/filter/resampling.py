@@ -1,4 +1,4 @@
-"""KLD-sampling: a new particle set, as large as its spread requires (Probabilistic Robotics, table 8.4)."""
+"""KLD-sampling: resampling with an adaptive number of particles (Probabilistic Robotics, table 8.4)."""
 
 import math
 from typing import Callable
@@ -20,9 +20,17 @@ def resample(
     draw_poses: DrawPoses,
     rng: np.random.Generator,
 ) -> ParticleSet:
-    """Particles drawn by weight until KLD-sampling has enough; about ``injected_share`` are new poses.
+    """Resample particles by weight, with a number determined by KLD-sampling.
 
-    ``draw_poses(count, rng)`` makes the new poses, (count, 3).
+    Args:
+        particles: Weighted particles.
+        settings: Bounds of the number, KLD error and quantile, resampling method.
+        injected_share: Expected share of new poses.
+        draw_poses: Draws the new poses: ``draw_poses(count, rng)`` returns (count, 3).
+        rng: Source of randomness.
+
+    Returns:
+        Particles of equal weight.
     """
     capacity = settings.max_particles
     cumulative = np.cumsum(particles.weights)
@@ -38,13 +46,13 @@ def resample(
 
 
 def particles_needed(occupied_bins: int, minimum: int, maximum: int, error: float, z: float) -> int:
-    """How many particles bound the Kullback-Leibler distance by ``error`` (Fox, 2003, equation 12)."""
+    """Return the number of particles that bounds the KL distance by ``error`` (Fox, 2003, equation 12)."""
     return _particles_needed(occupied_bins, minimum, maximum, error, z)
 
 
 @numba.njit(cache=True)
 def _drawn_systematically(cumulative, count, chance):
-    """Indices (count,) of particles drawn by weight with one random number for all (table 4.4)."""
+    """Low-variance resampling (table 4.4): indices (count,) drawn by weight with one random number."""
     drawn, last = np.empty(count, dtype=np.int64), cumulative.size - 1
     j = 0
     for i in range(count):
@@ -66,9 +74,9 @@ def _particles_needed(occupied_bins, minimum, maximum, error, z):
 
 @numba.njit(cache=True)
 def _draw_until_enough(poses, cumulative, chances, is_new, new, bounds):
-    """Draws one after the other, old particles by weight and new ones, until there are enough.
+    """Draw particles by weight, and new poses, until KLD-sampling has enough.
 
-    Returns the indices of the old ones drawn, and how many of the new were.
+    Returns the indices of the particles drawn and the number of new poses used.
     """
     table = bins.new_table(chances.size)
     drawn = np.empty(chances.size, dtype=np.int64)

@@ -1,4 +1,4 @@
-"""What a particle set says about where the robot is."""
+"""Statistics of a particle set: best cluster, mean, covariance, convergence."""
 
 import math
 from typing import Tuple
@@ -10,12 +10,12 @@ from amcl_lite.filter.bins import cluster_labels
 from amcl_lite.filter.particles import ParticleSet
 from planar import Pose2
 
-# All particles this close to their mean, metres along x and along y: the filter has converged (amcl).
+# The filter has converged if all particles are this close to their mean in x and in y [m] (amcl).
 _CONVERGED_WITHIN = 0.5
 
 
 def best_cluster(particles: ParticleSet) -> ParticleSet:
-    """The heaviest group of particles: one of several hypotheses, never something between two."""
+    """Return the cluster of largest weight: one hypothesis, never the mean of several."""
     labels = cluster_labels(particles.poses)
     if not labels.any():
         return particles
@@ -25,7 +25,7 @@ def best_cluster(particles: ParticleSet) -> ParticleSet:
 
 
 def mean_and_covariance(particles: ParticleSet) -> Tuple[Pose2, np.ndarray]:
-    """The weighted mean of a set, and its covariance (3, 3) in m^2 and rad^2.
+    """Compute the weighted mean of a set and its covariance (3, 3) [m^2, rad^2].
 
     Headings are averaged on the circle, their variance is that of circular statistics, -2 ln R; they are not
     correlated with positions.
@@ -37,13 +37,13 @@ def mean_and_covariance(particles: ParticleSet) -> Tuple[Pose2, np.ndarray]:
 
 
 def has_converged(particles: ParticleSet) -> bool:
-    """Whether every particle is near the unweighted mean, along x and along y."""
+    """Return whether every particle is close to the unweighted mean in x and in y."""
     return _are_all_near_mean(particles.poses, _CONVERGED_WITHIN)
 
 
 @numba.njit(cache=True)
 def _moments(poses, weights):
-    """Weighted means of x, y, cos(yaw) and sin(yaw); variance of x, covariance, variance of y.
+    """Return weighted means of x, y, cos(yaw), sin(yaw); variance of x, covariance, variance of y.
 
     Added up in order: numpy's last bit depends on where in memory its arrays lie.
     """

@@ -1,1 +1,1 @@
-"""Odometry: how it moves the particles, and when the robot has moved enough for a scan to count."""
+"""Motion models, and the update condition by the motion of the odometry."""

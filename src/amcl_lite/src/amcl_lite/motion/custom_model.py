@@ -1,7 +1,6 @@
-"""The contract of a motion model, and which one the settings choose.
+"""The contract of a motion model, and the selection by the settings.
 
-One of somebody's own is chosen by ``motion_plugin: my_package.my_module/MyModel`` and takes the place of
-``odom_model_type``.
+``motion_plugin: my_package.my_module/MyModel`` selects a user-defined model instead of ``odom_model_type``.
 """
 
 from typing import Protocol
@@ -17,14 +16,24 @@ from planar.plugins import PluginContract
 
 
 class MotionModel(Protocol):
-    """Made whenever settings change."""
+    """A motion model; created again when settings change."""
 
     def __init__(self, settings: LocalizerSettings): ...
 
     def moved(
         self, poses: np.ndarray, base_before: Pose2, base_now: Pose2, rng: np.random.Generator
     ) -> np.ndarray:
-        """Particles (N, 3) moved on as the odometry moved, with noise of ``rng``: (N, 3)."""
+        """Predict particles from the motion of the odometry.
+
+        Args:
+            poses: (N, 3) x, y, yaw in the map [m, rad].
+            base_before: Odometry pose at the last update.
+            base_now: Odometry pose now.
+            rng: Source of all randomness.
+
+        Returns:
+            Predicted poses (N, 3).
+        """
         ...
 
 
@@ -32,12 +41,12 @@ CONTRACT = PluginContract("motion model", MotionModel, LocalizerSettings, "amcl_
 
 
 def motion_model_of(settings: LocalizerSettings) -> MotionModel:
-    """Raises LocalizationError if one of somebody's own cannot be made."""
+    """Create the selected model. Raises LocalizationError if a user-defined one cannot be created."""
     return CustomMotionModel(settings) if settings.motion_plugin else AmclMotionModel(settings)
 
 
 class AmclMotionModel:
-    """Those of amcl."""
+    """The motion models of amcl and their corrected variants."""
 
     def __init__(self, settings: LocalizerSettings):
         self._settings = settings
@@ -49,7 +58,7 @@ class AmclMotionModel:
 
 
 class CustomMotionModel:
-    """One of other people: what it gives is checked, what goes wrong in it is its fault."""
+    """A user-defined motion model whose results are checked."""
 
     def __init__(self, settings: LocalizerSettings):
         self._custom = CustomModel(settings.motion_plugin, CONTRACT, settings)

@@ -1,8 +1,8 @@
-"""Odometry motion models: how particles follow what the odometry says (Probabilistic Robotics, table 5.6).
+"""Odometry motion models (Probabilistic Robotics, table 5.6).
 
-``diff`` and ``omni`` are amcl's: they take the variance of the book's formula for the standard deviation, and
-``omni`` mixes up its alphas; the parameters of ten years' robots are tuned to that. ``diff-corrected`` and
-``omni-corrected`` are right.
+``diff`` and ``omni`` are amcl's: they use the variance of the book's formula as the standard deviation, and
+``omni`` swaps two alphas; existing parameter files are tuned to that. ``diff-corrected`` and
+``omni-corrected`` follow the book.
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 from amcl_lite.config import LocalizerSettings
 from planar import Pose2, wrap
 
-# Below this translation, metres, the direction of travel is not known: the robot turns on the spot.
+# Below this translation the motion counts as a rotation in place [m].
 _NO_TRANSLATION = 0.01
 
 
@@ -25,7 +25,7 @@ def moved(
     settings: LocalizerSettings,
     rng: np.random.Generator,
 ) -> np.ndarray:
-    """Particles (N, 3) moved on as the odometry moved from ``base_before`` to ``base_now``, with noise."""
+    """Predict particles (N, 3) from the motion between two odometry poses, with noise."""
     noise = rng.standard_normal((len(poses), 3))
     if settings.motion_model.startswith("diff"):
         return _moved_diff(poses, base_before, base_now, settings, noise)
@@ -34,7 +34,7 @@ def moved(
 
 def _moved_diff(poses, base_before, base_now, settings, noise):
     rotation_1, translation, rotation_2 = rotations_and_translation(base_before, base_now)
-    # Driving backwards is as good as driving forwards: a half turn is no turn.
+    # Driving backwards counts as driving forwards: half a turn is no rotation.
     turn_1 = min(abs(wrap(rotation_1)), abs(wrap(rotation_1 - math.pi)))
     turn_2 = min(abs(wrap(rotation_2)), abs(wrap(rotation_2 - math.pi)))
     a1, a2, a3, a4 = (
@@ -76,7 +76,7 @@ def _moved_omni(poses, base_before, base_now, settings, noise):
 
 @numba.njit(cache=True)
 def _turned_driven_turned(poses, motions):
-    """Poses (N, 3) moved on by a rotation, a translation and a rotation each, (N, 3)."""
+    """Move poses (N, 3) by a rotation, a translation and a rotation each (N, 3)."""
     moved_poses = np.empty_like(poses)
     for i in range(poses.shape[0]):
         direction = poses[i, 2] + motions[i, 0]
@@ -88,7 +88,7 @@ def _turned_driven_turned(poses, motions):
 
 @numba.njit(cache=True)
 def _shifted(poses, bearing, motions):
-    """Poses (N, 3) moved on by a way along ``bearing``, a turn and a way to the right of it each, (N, 3)."""
+    """Move poses (N, 3) by a translation along ``bearing``, a rotation and a strafe to the right (N, 3)."""
     moved_poses = np.empty_like(poses)
     for i in range(poses.shape[0]):
         forward, turn, strafe = motions[i]
@@ -105,7 +105,7 @@ def _wrapped(angle):
 
 
 def rotations_and_translation(base_before: Pose2, base_now: Pose2) -> Tuple[float, float, float]:
-    """A motion as rotation, translation, rotation (radians, metres, radians)."""
+    """Decompose a motion into rotation [rad], translation [m] and rotation [rad]."""
     dx, dy = base_now.x - base_before.x, base_now.y - base_before.y
     translation = math.hypot(dx, dy)
     rotation_1 = 0.0 if translation < _NO_TRANSLATION else wrap(math.atan2(dy, dx) - base_before.yaw)
@@ -113,5 +113,5 @@ def rotations_and_translation(base_before: Pose2, base_now: Pose2) -> Tuple[floa
 
 
 def _spreads(settings, *variances) -> np.ndarray:
-    """Standard deviations: the root of the variances, or amcl's, which are the variances."""
+    """Return standard deviations: roots of the variances or, as amcl does, the variances themselves."""
     return np.sqrt(variances) if settings.motion_model.endswith("corrected") else np.array(variances)

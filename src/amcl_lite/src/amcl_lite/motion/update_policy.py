@@ -1,4 +1,4 @@
-"""When a scan is worked into the filter."""
+"""The condition for an update: motion, time or request."""
 
 from typing import Optional, Set
 
@@ -7,10 +7,10 @@ from planar import Pose2, wrap
 
 
 class UpdatePolicy:
-    """The first scan counts; after a motion, a long stand or a request, each laser's next scan does, once.
+    """Decides which scans are used: the first one, and one of each laser after motion, time or a request.
 
-    ``updated_at``: where the odometry had the robot when it was last known where it is, if it was; from then
-    on, where the last scan that was taken was made.
+    Attributes:
+        updated_at: Odometry pose of the last update, or None.
     """
 
     def __init__(self, updated_at: Optional[Pose2] = None) -> None:
@@ -20,11 +20,11 @@ class UpdatePolicy:
         self._is_requested = True
 
     def request(self) -> None:
-        """Makes the next scan count even if the robot stands still."""
+        """Use the next scan even if the robot has not moved."""
         self._is_requested = True
 
     def is_due(self, base_in_odom: Pose2, laser: str, stamp: float, settings: LocalizerSettings) -> bool:
-        """Whether a scan of ``laser``, made at ``base_in_odom`` and ``stamp`` (seconds), is to be taken."""
+        """Return whether to use a scan of ``laser`` with this odometry pose and ``stamp`` [s]."""
         if (
             self.updated_at is None
             or _has_moved(self.updated_at, base_in_odom, settings)
@@ -37,7 +37,7 @@ class UpdatePolicy:
         return laser not in self._lasers_done
 
     def record_update(self, base_in_odom: Pose2, laser: str) -> None:
-        """Notes that a scan is taken."""
+        """Record that a scan is used."""
         self.updated_at = base_in_odom
         self._lasers_done.add(laser)
 

@@ -1,1 +1,1 @@
-"""Beyond amcl: noticing that the robot is lost, and where it may be then."""
+"""Beyond amcl: detection of a lost robot, and pose hypotheses for it."""

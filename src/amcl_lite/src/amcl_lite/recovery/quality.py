@@ -1,4 +1,4 @@
-"""How well a scan fits the map at a pose, and whether the robot is lost."""
+"""Fit of a scan at a pose, and detection of a lost robot."""
 
 import math
 from dataclasses import dataclass
@@ -11,31 +11,33 @@ from amcl_lite.sensor.likelihood_field import LikelihoodField, fit_at, pose_in_c
 from planar import OccupancyGrid, Pose2
 from planar.geometry.ray_casting import cast_rays
 
-# Distance, metres, at which a beam's end is half-heartedly explained by the map (one standard deviation).
+# Standard deviation of the distance between a beam's end and the obstacle that explains it [m].
 _EXPLAINED_WITHIN = 0.1
-# A beam that is longer than the map allows by this, metres, went through a wall.
+# A beam that is longer than expected by this has passed through an obstacle of the map [m].
 _THROUGH = 0.25
 _TINY = 1e-30  # so that the logarithm of a fit exists
 # Logistic regression of "the pose is right to 0.5 m" on 7200 poses of ten drives through map/home.world,
-# half of them wrong, with up to 40 % of the beams cut short by things that are not on the map. How well it
-# does elsewhere: tests/benchmarks/localization_quality.py (area under the ROC curve 0.998 over three worlds).
+# half of them wrong, with up to 40 % of the beams cut short by objects that are not in the map. Other
+# worlds: tests/benchmarks/localization_quality.py (area under the ROC curve 0.998 over three worlds).
 _BIAS, _PER_EXPLAINED, _PER_THROUGH = -6.85, 17.2, -9.8
 
 # Smoothed over about this time, seconds, quality must fall below LOST_BELOW for the robot to be lost, and
 # rise above FOUND_ABOVE for it to be found again.
 SMOOTHING_SECONDS = 1.0
 LOST_BELOW, FOUND_ABOVE = 0.2, 0.7
-# From which on a single scan is believed.
+# Probability above which a single scan confirms a pose.
 CONFIRMED_ABOVE = 0.99
 
 
 @dataclass(frozen=True)
 class ScanQuality:
-    """``probability``: that the pose is right to half a metre, judged by this scan alone, 0 to 1.
+    """Fit of one scan at a pose.
 
-    ``explained``: how well the beams' ends fit the map, 0 to 1. ``through``: the share of beams that would
-    have gone through a wall. ``mean_distance``: metres from the beams' ends to the nearest obstacles of the
-    map.
+    Attributes:
+        probability: Probability that the pose is correct to 0.5 m, given this scan alone.
+        explained: Mean fit of the beams' ends, 0 to 1.
+        through: Share of beams that would have passed through an obstacle.
+        mean_distance: Mean distance from the beams' ends to the nearest obstacles [m].
     """
 
     probability: float
@@ -45,19 +47,19 @@ class ScanQuality:
 
     @property
     def contradicts_pose(self) -> bool:
-        """Whether the scan speaks against the pose."""
+        """Whether the scan contradicts the pose."""
         return self.probability < LOST_BELOW
 
     @property
     def confirms_pose(self) -> bool:
-        """Whether the scan all but proves the pose."""
+        """Whether the scan alone confirms the pose."""
         return self.probability > CONFIRMED_ABOVE
 
 
 def scan_quality(
     base_in_map: Pose2, beams: Beams, field: LikelihoodField, grid: OccupancyGrid
 ) -> ScanQuality:
-    """Judges a pose by the beams of a scan; the fewer of them met anything, the less they tell."""
+    """Evaluate a pose by the beams of a scan; beams without return carry less evidence."""
     laser_in_map = base_in_map @ Pose2(float(beams.start_xy[0]), float(beams.start_xy[1]), 0.0)
     expected = cast_rays(grid, laser_in_map, beams.directions, beams.max_range)
     x, y, yaw = base_in_map.x, base_in_map.y, base_in_map.yaw
@@ -72,7 +74,7 @@ def scan_quality(
 
 @numba.njit(cache=True)
 def _judged(x, y, yaw, ends_xy, ranges, expected, map_to_cells, fit, sigma):
-    """How well beams are explained, how many went through walls, the mean distance (inf: no beam met)."""
+    """Return mean fit, number of beams through obstacles, mean distance (inf without any hit)."""
     through = 0
     for i in range(ranges.size):
         through += ranges[i] > expected[i] + _THROUGH
@@ -91,7 +93,7 @@ def _judged(x, y, yaw, ends_xy, ranges, expected, map_to_cells, fit, sigma):
 
 
 class LostDetector:
-    """Says from a stream of qualities whether the robot is lost: with hysteresis, not at one bad scan."""
+    """Detects a lost robot from smoothed scan qualities, with hysteresis."""
 
     def __init__(self, is_lost: bool = False):
         self.is_lost = is_lost
@@ -99,7 +101,7 @@ class LostDetector:
         self._stamp = math.nan
 
     def add(self, quality: ScanQuality, stamp: float) -> bool:
-        """Takes in the quality of a scan made at ``stamp``, seconds; returns whether the robot is lost."""
+        """Add the quality of a scan with ``stamp`` [s] and return whether the robot is lost."""
         elapsed = stamp - self._stamp
         self._stamp = stamp
         if elapsed > 0.0:
@@ -112,19 +114,19 @@ class LostDetector:
         return self.is_lost
 
 
-# Seconds of scans after which one of them should have fitted a map that is right.
+# Time within which a scan should fit a correct map [s].
 MISMATCH_SECONDS = 8.0
 
 
 class MapMismatchMonitor:
-    """Says once that no scan has fitted the map since the first."""
+    """Detects, once, that no scan has fitted the map since the start."""
 
     def __init__(self) -> None:
         self._is_settled = False
         self._first = math.nan
 
     def add(self, quality: ScanQuality, stamp: float) -> bool:
-        """Takes in the quality of a scan made at ``stamp``, seconds; returns whether to say so now."""
+        """Add the quality of a scan with ``stamp`` [s] and return whether to warn now."""
         if math.isnan(self._first) or stamp < self._first:
             self._first = stamp
         if quality.probability > FOUND_ABOVE:

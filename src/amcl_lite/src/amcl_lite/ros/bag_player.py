@@ -1,4 +1,4 @@
-"""Plays a bag straight into the node: ``amcl --run-from-bag``."""
+"""Process a bag inside the node: ``amcl --run-from-bag``."""
 
 import time
 from pathlib import Path
@@ -18,7 +18,7 @@ MAP_POLL_SECONDS = 0.5
 
 
 class BagPlayer:
-    """Works through a bag, says where the robot is in the end, and ends the node."""
+    """Processes a bag, logs the final pose and shuts the node down."""
 
     def __init__(
         self, shared: LockedLocalizer, transforms: Transforms, scans: ScanQueue, publisher: EstimatePublisher
@@ -27,7 +27,7 @@ class BagPlayer:
         self._scans, self._publisher = scans, publisher
 
     def run(self, path: Path, localize_globally: bool) -> None:
-        """Waits for the map first. Raises BagError."""
+        """Process the bag after the map has arrived. Raises BagError."""
         while self._shared.localizer is None and not rospy.is_shutdown():
             time.sleep(MAP_POLL_SECONDS)
         if localize_globally:
@@ -47,13 +47,19 @@ class BagPlayer:
 
 
 def play_bag(path: Path, transforms: Transforms, scans: ScanQueue, scan_period: float) -> None:
-    """Feeds the bag's transforms and scans to ``transforms`` and ``scans``; returns when all are dealt with.
+    """Feed and publish the transforms and scans of a bag; return when all are processed.
 
-    ``scan_period``: wall seconds between scans, 0 or less for none. What is fed is published too. Raises
-    BagError, if the bag was cut off when what there is of it has been dealt with.
+    Args:
+        path: The bag.
+        transforms: Receives the transforms.
+        scans: Receives the scans.
+        scan_period: Wall time between scans [s]; 0 or less for none.
+
+    Raises:
+        BagError: If the bag is truncated, after its readable part has been processed.
     """
     scan_topic = absolute_name(scans.topic)
-    # On a busy machine the echo comes so late that time seems to have jumped back.
+    # On a busy machine its own messages would arrive so late that time seems to jump back.
     scans.unsubscribe()
     scan_publisher = rospy.Publisher(scans.topic, LaserScanArrays, queue_size=100)
     tf_publisher = rospy.Publisher("/tf", TFMessage, queue_size=100)

@@ -1,4 +1,4 @@
-"""What becomes of an estimate: topics, the transform, and the pose kept for a restart."""
+"""Publication of estimates: topics, transform, and the checkpoint for a restart."""
 
 from typing import Optional
 
@@ -13,7 +13,7 @@ from planar import Pose2
 
 
 class EstimatePublisher:
-    """Publishes what each scan has led to; ``last_estimate`` is of ``last_stamp``, None at first."""
+    """Publishes the result of each scan; ``last_estimate`` has the stamp ``last_stamp``."""
 
     def __init__(self, shared: LockedLocalizer, views: AmclTopics, tf_bridge: TfBridge):
         self.last_estimate: Optional[Estimate] = None
@@ -24,7 +24,7 @@ class EstimatePublisher:
         self._base_in_odom: Optional[Pose2] = None
 
     def restore_checkpoint(self, localizer: Localizer) -> None:
-        """Before the first scan: goes on with what a node that has crashed believed."""
+        """Resume from the belief of a crashed node, before the first scan."""
         before, self._saved_belief = self._saved_belief, None
         if before is not None:
             localizer.restore(before)
@@ -37,7 +37,15 @@ class EstimatePublisher:
         base_in_odom: Pose2,
         stamp: rospy.Time,
     ) -> None:
-        """After each scan; ``is_updated``: whether it was worked in; ``estimate``: the new one, if any."""
+        """Publish the result of a scan.
+
+        Args:
+            localizer: The Localizer.
+            estimate: The new estimate, if any.
+            is_updated: Whether the scan was used for an update.
+            base_in_odom: Odometry pose of the scan.
+            stamp: Stamp of the scan.
+        """
         self._base_in_odom = base_in_odom
         if is_updated:
             self._views.publish_particles(localizer)
@@ -55,7 +63,7 @@ class EstimatePublisher:
             self._checkpoint.save_if_due(rate, belief, base_in_odom, covariance)
 
     def save_pose(self) -> None:
-        """Before the node ends: a restarted one resumes where this one was."""
+        """Save the pose at shutdown, for the next start."""
         with self._shared.lock:
             localizer = self._shared.localizer
             odom_in_map = None if localizer is None else localizer.odom_in_map

@@ -1,4 +1,4 @@
-"""Poses that people and programs tell: topic ``initialpose``."""
+"""Initial poses from the topic ``initialpose``."""
 
 import threading
 from typing import NamedTuple, Optional
@@ -15,13 +15,13 @@ from planar_ros.lockstep import LockstepClient
 from planar_ros.messages.conversion import frame_name, pose2_from_msg
 from planar_ros.messages.validation import subscribe
 
-# How long a pose may wait for the odometry of its stamp, which moves it to the present.
+# Longest wait for the odometry at the stamp of a pose, which is needed to predict it to now.
 PATIENCE = rospy.Duration(0.5)
 RETRY_SECONDS = 0.1
 
 
 class _PendingPose(NamedTuple):
-    """A pose in the map, of ``stamp``; ``covariance`` (3, 3), m^2 and rad^2."""
+    """A pose in the map at ``stamp`` with its covariance (3, 3) [m^2, rad^2]."""
 
     pose: Pose2
     covariance: np.ndarray
@@ -30,14 +30,15 @@ class _PendingPose(NamedTuple):
     force_update: bool
 
     def has_waited(self, now: rospy.Time) -> bool:
-        """Whether it is time to do without odometry; after a jump back of time it is."""
+        """Whether the wait for odometry is over, also after a jump back of time."""
         return not self.received_at <= now < self.received_at + PATIENCE
 
 
 class InitialPoseSubscriber:
-    """Starts the localizer anew around each pose told, moved on by what the robot has driven since.
+    """Restarts the filter around each received pose, predicted by the odometry since its stamp.
 
-    A pose whose odometry has not come yet waits for it, but no callback does: in step no time passes then.
+    A pose whose odometry has not arrived is retried by a timer: in lock-step, no time passes while a callback
+    blocks.
     """
 
     def __init__(self, shared: LockedLocalizer, tf_bridge: TfBridge, step: LockstepClient):
@@ -48,9 +49,9 @@ class InitialPoseSubscriber:
         step.every(lambda: RETRY_SECONDS, self._retry, lambda: None)
 
     def handle(self, message: PoseWithCovarianceStamped, force_update: bool) -> None:
-        """Warns of a pose that cannot be used; with ``force_update`` the next scan counts.
+        """Handle a pose; with ``force_update`` the next scan is used. An unusable frame is a warning.
 
-        Raises PlanarError for a pose at which no robot can be.
+        Raises PlanarError for a pose out of range.
         """
         frame, map_frame = frame_name(message.header.frame_id), frame_name(self._shared.settings.map_frame)
         if frame == "":
@@ -91,7 +92,7 @@ class InitialPoseSubscriber:
 
 
 def _planar(covariance) -> np.ndarray:
-    """The (3, 3) of x, y and yaw out of the 36 numbers of a message."""
+    """Extract the covariance (3, 3) of x, y, yaw from the 36 numbers of a message."""
     whole: np.ndarray = np.reshape(covariance, (6, 6))
     planar = np.zeros((3, 3))
     planar[:2, :2] = whole[:2, :2]

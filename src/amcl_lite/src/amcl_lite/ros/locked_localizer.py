@@ -1,4 +1,4 @@
-"""The node's Localizer, as all its callbacks share it."""
+"""The Localizer of the node, shared by its callbacks."""
 
 import threading
 from typing import Optional, Tuple
@@ -13,9 +13,9 @@ from planar import OccupancyGrid, Pose2
 
 
 class LockedLocalizer:
-    """One Localizer, none before the first map, and the settings in force, guarded by one lock.
+    """A Localizer, None before the first map, and its settings, guarded by one lock.
 
-    Whoever works with ``localizer`` for longer than one call here holds ``lock``.
+    Hold ``lock`` for a sequence of calls to ``localizer``.
     """
 
     def __init__(self, settings: NodeSettings):
@@ -26,9 +26,9 @@ class LockedLocalizer:
         self._pending_pose: Optional[Tuple[Pose2, np.ndarray]] = None
 
     def set_map(self, grid: OccupancyGrid) -> Localizer:
-        """Goes over to a map, at the start pose, or at the pose given while there was no map.
+        """Use a new map, starting at the initial pose or at a pose received before the map.
 
-        Raises LocalizationError if the map is of no use.
+        Raises LocalizationError if the map has no free cells.
         """
         localizer = Localizer(grid, self.settings, self._rng)
         start = read_initial_pose()
@@ -41,7 +41,7 @@ class LockedLocalizer:
         return localizer
 
     def set_pose(self, base_in_map: Pose2, covariance: np.ndarray, force_update: bool) -> None:
-        """Starts anew around a pose, as soon as there is a map; ``covariance``: (3, 3), m^2 and rad^2."""
+        """Restart around a pose with covariance (3, 3) [m^2, rad^2], as soon as there is a map."""
         with self.lock:
             if self.localizer is None:
                 self._pending_pose = (base_in_map, covariance)
@@ -51,20 +51,20 @@ class LockedLocalizer:
                 self.localizer.request_update()
 
     def start_global_localization(self) -> None:
-        """Global localization; nothing without a map."""
+        """Start global localization, if there is a map."""
         with self.lock:
             if self.localizer is not None:
                 rospy.loginfo("Initializing with uniform distribution")
                 self.localizer.start_global_localization()
 
     def request_update(self) -> None:
-        """Makes the next scan count; nothing without a map."""
+        """Use the next scan for an update, if there is a map."""
         with self.lock:
             if self.localizer is not None:
                 self.localizer.request_update()
 
     def reconfigure(self, settings: NodeSettings) -> None:
-        """Goes on with other settings; as in amcl, the filter starts anew around the last estimate."""
+        """Change the settings; as in amcl, the filter restarts around the last estimate."""
         with self.lock:
             self.settings = settings
             if self.localizer is not None:

@@ -1,4 +1,4 @@
-"""Where the map comes from."""
+"""The sources of the map: service, topic, or ``set_map``."""
 
 import time
 from typing import Callable
@@ -22,10 +22,12 @@ FETCH_RETRY_SECONDS = 0.5
 
 
 class MapSource:
-    """Gives the localizer its map: from service or topic at the start, at any time by service ``set_map``.
+    """Sets the map of the Localizer from the service or the topic, or by the service ``set_map``.
 
-    ``show_field(fit_grid)`` is called for each map taken. ``take_pose(message, force_update)`` is given the
-    pose that comes with ``set_map``.
+    Args:
+        shared: The Localizer.
+        publish_likelihood_field: Called with the likelihood field of each new map.
+        handle_pose: Called with the pose of a ``set_map`` request and whether to force an update.
     """
 
     def __init__(
@@ -43,13 +45,13 @@ class MapSource:
 
     @property
     def name(self) -> str:
-        """Of the topic or the service, for people."""
+        """Name of the topic or the service, for messages."""
         if self._is_topic:
             return f"topic {rospy.resolve_name('map')}"
         return f"service {rospy.resolve_name('static_map')}"
 
     def fetch(self) -> None:
-        """Gets the map from the service static_map, however long it takes; PlanarError if the map is bad."""
+        """Wait for the map from the service static_map. Raises PlanarError if the map is invalid."""
         if self._is_topic:
             return
         rospy.loginfo("Requesting the map...")

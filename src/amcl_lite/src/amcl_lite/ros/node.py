@@ -1,4 +1,4 @@
-"""The node ``amcl``: translates between ROS and a Localizer, with the names and habits of amcl 1.17.
+"""The node ``amcl``: translates between ROS and a Localizer, with the interface of amcl 1.17.
 
 amcl_lite
 amcl_lite --explain-params
@@ -35,7 +35,7 @@ from planar_ros.node.runner import run
 
 
 class AmclNode:
-    """Puts the parts together; hands each scan to the one Localizer and publishes what it returns."""
+    """The node: passes each scan to the Localizer and publishes the result."""
 
     def __init__(self, scan_topic: str = "scan"):
         self._step = LockstepClient.of_node()
@@ -66,12 +66,12 @@ class AmclNode:
         self._step.join(lambda: settings.use_map_topic or self._shared.localizer is not None)
 
     def fetch_map(self) -> None:
-        """Gets the map, however long it takes, if it does not come by topic; PlanarError if it is bad."""
+        """Wait for the map of the service, unless it comes by topic. Raises PlanarError if it is invalid."""
         self._map_source.fetch()
 
     def run_from_bag(self, path: str, localize_globally: bool) -> None:
-        """Works through a bag, says where the robot is in the end, and ends the node."""
-        from amcl_lite.ros.bag_player import BagPlayer  # rosbag takes memory, and is rarely wanted
+        """Process a bag, log the final pose and shut the node down."""
+        from amcl_lite.ros.bag_player import BagPlayer  # late: rosbag needs memory and is rarely used
 
         bag_player = BagPlayer(self._shared, self._transforms, self._scans, self._publisher)
         bag_player.run(Path(path), localize_globally)
@@ -129,7 +129,7 @@ class AmclNode:
 
 
 def _warm_up(settings: NodeSettings) -> None:
-    """Compiles or loads the kernels, before any scan comes; says so if that takes long."""
+    """Compile or load the kernels before the first scan; log if that takes long."""
     is_warm = threading.Event()
     ReadinessMonitor({"its kernels to be compiled, as after each installation": is_warm.is_set})
     warm_up(settings)

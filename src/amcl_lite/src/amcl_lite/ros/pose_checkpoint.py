@@ -1,7 +1,7 @@
-"""What is kept for a restart, where the node finds out where it was.
+"""Checkpoint of pose and belief, from which a restarted node resumes.
 
-The official parameters say where the robot was; it has driven on meanwhile. So after a crash, where odometry
-goes on, what the filter believed counts instead, and where odometry has brought the robot since.
+The official ``initial_pose`` parameters hold the last saved pose, but the robot has moved since. After a
+crash, with continuous odometry, the node resumes from the saved belief and the odometry instead.
 """
 
 import math
@@ -22,12 +22,12 @@ from planar_ros.node.checkpoint import FileCheckpoint
 from planar_ros.node.parameters import ParameterWriter, read_settings
 from planar_ros.node.reconfigure import RESTORE
 
-# Wall seconds between two writings at the least: a simulation may be so fast that the master did little else.
+# Shortest wall time between two checkpoints [s]: a fast simulation would keep the master busy.
 _LEAST_SECONDS = 0.5
 
 
 def read_initial_pose() -> InitialPose:
-    """The ``~initial_pose_*`` and ``~initial_cov_*`` of now; NaN is ignored, with a warning."""
+    """Read ``~initial_pose_*`` and ``~initial_cov_*``; NaN is ignored with a warning."""
     names = official_names(InitialPose)
     for name in names:
         value = rospy.get_param("~" + name, 0.0)
@@ -38,7 +38,7 @@ def read_initial_pose() -> InitialPose:
 
 
 class PoseCheckpoint:
-    """Keeps pose and belief, no more often than the rate says: one as amcl does, one for after a crash."""
+    """Saves the pose, as amcl does, and the belief, for a restart after a crash."""
 
     def __init__(self):
         self._kept_at, self._kept_at_wall = rospy.Time(0), 0.0
@@ -46,20 +46,22 @@ class PoseCheckpoint:
         self._checkpoint = FileCheckpoint()
 
     def load_belief(self) -> Optional[Belief]:
-        """What a node of this name that has crashed believed; None without such a one."""
+        """Return the belief of a crashed node of this name, or None."""
         found = self._checkpoint.latest
         if found is None:
             return None
         try:
             particles = load_particles(found.path)
         except LocalizationError as error:
-            rospy.logwarn("where the robot was before the crash is not known: %s", error)
+            rospy.logwarn(
+                "the checkpoint of the crashed node cannot be read, starting at the initial pose: %s", error
+            )
             return None
         poses = {name: Pose2(**found.value[name]) for name in ("base_in_odom", "odom_in_map")}
         return Belief(particles, is_lost=found.value["is_lost"], **poses)
 
     def save_if_due(self, rate: float, belief: Belief, base_in_odom: Pose2, covariance) -> None:
-        """``rate``: Hz, 0 or less for never."""
+        """Save pose and belief at most at ``rate`` [Hz]; never for 0 or less."""
         now, wall = rospy.Time.now(), time.monotonic()
         is_due = rate > 0.0 and abs((now - self._kept_at).to_sec()) >= 1.0 / rate
         if is_due and wall - self._kept_at_wall >= _LEAST_SECONDS:
@@ -68,7 +70,7 @@ class PoseCheckpoint:
             self._save_belief(belief)
 
     def save(self, base_in_map: Pose2, covariance) -> None:
-        """``covariance``: (3, 3); its diagonal is kept. A pose that no node could start from is not."""
+        """Save a pose and the diagonal of its covariance (3, 3), if they are valid."""
         if not is_valid_initial_pose(base_in_map, covariance):
             return
         variances = (float(covariance[i, i]) for i in range(3))

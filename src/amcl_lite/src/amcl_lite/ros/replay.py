@@ -1,4 +1,4 @@
-"""Localizes in a recorded bag, offline, as fast as the machine allows: ``amcl_lite_replay BAG --map MAP``."""
+"""Localize offline in a recorded bag, as fast as possible: ``amcl_lite_replay BAG --map MAP``."""
 
 import argparse
 from pathlib import Path
@@ -24,7 +24,7 @@ from planar_ros.bags.scan_log import LoggedScan, ScanLog
 
 
 def main(arguments: Optional[List[str]] = None) -> int:
-    """Returns 0; 1 if the bag broke off, and what was localized is written; 2 if nothing was."""
+    """Run the command; returns 0, or 1 if the bag was truncated, or 2 if nothing was localized."""
     return run_replay(_parser(), _replay, arguments)
 
 
@@ -32,7 +32,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="amcl_lite_replay",
         description="Localize a robot in a recorded bag, without a master. The same bag, map, parameters and "
-        "seed give the same trajectory. If the bag holds the truth, the errors are told.",
+        "seed give the same trajectory. If the bag contains ground truth, the errors are printed.",
     )
     add_replay_options(parser, "amcl")
     parser.add_argument("--map", metavar="YAML", type=Path, required=True, help="the map, as for map_server")
@@ -42,8 +42,10 @@ def _parser() -> argparse.ArgumentParser:
         type=Path,
         help="where to write the pose in the map at every scan (default: the name of the bag, here)",
     )
-    parser.add_argument("--global", dest="everywhere", action="store_true", help="the start is not known")
-    parser.add_argument("--seed", type=int, help="of all chance (default: that of the parameters, 0)")
+    parser.add_argument(
+        "--global", dest="everywhere", action="store_true", help="start with global localization"
+    )
+    parser.add_argument("--seed", type=int, help="seed of all random numbers (default: parameter seed, 0)")
     parser.add_argument(
         "--start",
         metavar=("X", "Y", "YAW"),
@@ -85,7 +87,7 @@ def _replay(options: argparse.Namespace) -> int:
 
 
 def _localizer(options: argparse.Namespace, settings: NodeSettings) -> Localizer:
-    """Where it starts: as the options say, or else the parameters."""
+    """Create the Localizer at the start pose of the options or of the parameters."""
     seed = settings.seed if options.seed is None else options.seed
     rng = np.random.default_rng(seed if seed >= 0 else None)
     start = settings_from_yaml(InitialPose, options.config)[0] if options.config else InitialPose()
@@ -97,7 +99,7 @@ def _localizer(options: argparse.Namespace, settings: NodeSettings) -> Localizer
 
 
 def errors_of(stamped_poses: np.ndarray, truth: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
-    """How far poses (N, 4) ``[t, x, y, yaw]`` are from the truth (M, 4) at their stamps: metres, radians."""
+    """Compute the errors of poses (N, 4) ``[t, x, y, yaw]`` against ground truth (M, 4) [m, rad]."""
     stamps = stamped_poses[:, 0]
     x, y, yaw = (
         np.interp(stamps, truth[:, 0], values) for values in (*truth[:, 1:3].T, np.unwrap(truth[:, 3]))

@@ -1,4 +1,4 @@
-"""Warns when scans stay away."""
+"""Warning when no scans arrive."""
 
 import threading
 import time
@@ -6,12 +6,12 @@ import time
 import rospy
 
 SCAN_TIMEOUT_SECONDS = 15.0
-# Wall seconds between two looks: a timer of ROS time would wake with every message of the clock.
-_LOOK_SECONDS = 1.0
+# Wall time between two checks [s]: a timer in ROS time would wake with every clock message.
+_CHECK_SECONDS = 1.0
 
 
 class ScanWatchdog:
-    """Says so, again and again, while no scan has come on ``topic`` for ``SCAN_TIMEOUT_SECONDS``."""
+    """Warns repeatedly while no scan arrives on ``topic`` for ``SCAN_TIMEOUT_SECONDS``."""
 
     def __init__(self, topic: str):
         self._topic = topic
@@ -22,12 +22,12 @@ class ScanWatchdog:
         threading.Thread(target=self._watch, daemon=True).start()
 
     def on_scan(self) -> None:
-        """A scan has come."""
+        """Record the arrival of a scan."""
         self._last_scan = self._last_warned = rospy.Time.now()
 
     def _watch(self):
         while not rospy.is_shutdown():
-            time.sleep(_LOOK_SECONDS)
+            time.sleep(_CHECK_SECONDS)
             now = rospy.Time.now()
             if self._last_warned == rospy.Time(0):  # there was no clock yet
                 self.on_scan()

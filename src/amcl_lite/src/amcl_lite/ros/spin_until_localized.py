@@ -1,4 +1,4 @@
-"""Finds out where the robot is: global localization, then turning on the spot until it is done.
+"""Localize the robot globally: start global localization, then rotate in place until it has converged.
 
 spin_until_localized [--timeout SECONDS] [--turn-speed RAD_PER_S] [--node AMCL]
 """
@@ -20,10 +20,10 @@ from planar_ros.messages.validation import subscribe
 from planar_ros.node.flush import publish_on_shutdown
 from planar_ros.node.runner import fail, run
 
-# The particles are in one place when their standard deviations, metres and radians, are below these.
+# Standard deviations below which the particles have converged [m, m, rad].
 SETTLED_WITHIN = np.array((0.2, 0.2, 0.1))
 POLL_SECONDS = 0.05
-# How long, wall seconds, a node may be missing, and the clock may stand still.
+# Longest wall time without the node, or with a stopped clock [s].
 PATIENCE_SECONDS = 10.0
 
 
@@ -32,9 +32,9 @@ class NotLocalizedError(PlanarError):
 
 
 class SpinUntilLocalized:
-    """Localized means: the particles are in one place, and amcl_lite says that its scans fit the map there.
+    """Rotates until the particles have converged and amcl_lite reports that its scans fit the map.
 
-    The official amcl says nothing of that kind: then the particles decide alone.
+    The official amcl does not publish the fit; then convergence of the particles is sufficient.
     """
 
     def __init__(self, node: str):
@@ -47,7 +47,7 @@ class SpinUntilLocalized:
         subscribe("amcl_pose", PoseWithCovarianceStamped, self._on_pose, queue_size=2)
 
     def spin(self, timeout: float, turn_speed: float) -> str:
-        """Returns where the robot is, in words. Raises NotLocalizedError after ``timeout``, ROS seconds."""
+        """Localize and return the pose as text. Raises NotLocalizedError after ``timeout`` [s, ROS time]."""
         _wait_for_time()
         self._ask_for_global_localization()
         clock = _Clock()
@@ -93,7 +93,7 @@ class SpinUntilLocalized:
 
 
 class _Clock:
-    """ROS time since the start; raises NotLocalizedError if it stands still."""
+    """ROS time since the start; raises NotLocalizedError if the clock stops."""
 
     def __init__(self):
         self._start = self._newest = rospy.get_time()
@@ -107,17 +107,17 @@ class _Clock:
             raise NotLocalizedError("interrupted")
         if time.monotonic() - self._moved_at > PATIENCE_SECONDS:
             raise NotLocalizedError(
-                f"time has stood still for {PATIENCE_SECONDS:g} s: is the simulation paused?"
+                f"/clock has not advanced for {PATIENCE_SECONDS:g} s; is the simulation paused?"
             )
         return now - self._start
 
 
 def _wait_for_time():
-    """A node that has just started knows no simulated time yet, and could not tell which poses are new."""
+    """Wait for /clock: without time, new poses cannot be distinguished from old ones."""
     until = time.monotonic() + PATIENCE_SECONDS
     while not rospy.get_time():
         if rospy.is_shutdown() or time.monotonic() > until:
-            raise NotLocalizedError(f"no time came on /clock within {PATIENCE_SECONDS:g} s")
+            raise NotLocalizedError(f"no message on /clock within {PATIENCE_SECONDS:g} s")
         time.sleep(POLL_SECONDS)
 
 
@@ -143,9 +143,9 @@ def main():
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="spin_until_localized",
-        description="Finds out where the robot is, wherever that may be in the map: spreads amcl's particles "
-        "all over it, then turns the robot on the spot until it is localized. Exit code 0: it is; 1: it is "
-        "not, and why.",
+        description="Localizes the robot anywhere in the map: distributes amcl's particles over the free "
+        "space, then rotates the robot in place until it is localized. Exit code 0: localized; 1: not "
+        "localized, with the reason.",
     )
     parser.add_argument(
         "--timeout", type=_positive, default=60.0, metavar="SECONDS", help="ROS time (%(default)s)"

@@ -1,4 +1,4 @@
-"""What amcl tells tf, and asks of it."""
+"""The transform map -> odom, and odometry from tf."""
 
 from typing import Optional
 
@@ -11,14 +11,14 @@ from planar_ros.messages.transforms import Transforms
 
 
 class TfBridge:
-    """Sends where odometry lies in the map, and says how far the robot has come by odometry."""
+    """Broadcasts map -> odom and looks up the motion of the odometry."""
 
     def __init__(self, transforms: Transforms, shared: LockedLocalizer):
         self._transforms, self._shared = transforms, shared
         self.has_sent = False
 
     def send(self, odom_in_map: Pose2, stamp: rospy.Time) -> None:
-        """Valid for ``transform_tolerance`` beyond ``stamp``; nothing if ``tf_broadcast`` is off."""
+        """Broadcast map -> odom, dated ``transform_tolerance`` ahead, unless ``tf_broadcast`` is off."""
         settings = self._shared.settings
         if settings.tf_broadcast:
             expiry = stamp + rospy.Duration(settings.transform_tolerance)
@@ -27,7 +27,7 @@ class TfBridge:
             self.has_sent = True
 
     def motion_since(self, stamp: rospy.Time) -> Optional[Pose2]:
-        """How far the robot has come, by odometry, since ``stamp``; nowhere since 0; None if not known."""
+        """Return the motion of the odometry since ``stamp``, identity for stamp 0, None if unknown."""
         frames = self._shared.settings.odom_frame, self._shared.settings.base_frame
         if stamp == rospy.Time(0):
             return Pose2()

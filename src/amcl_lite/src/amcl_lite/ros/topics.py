@@ -1,4 +1,4 @@
-"""What the node amcl publishes, apart from transforms."""
+"""The topics of the node amcl."""
 
 import numpy as np
 import rospy
@@ -20,15 +20,13 @@ from planar_ros.messages.conversion import (
 )
 
 DIAGNOSTICS_PERIOD = 1.0
-# The weighted particles are drawn as lines of this length, metres, and at most so many of them.
+# Length of the lines for weighted particles [m], and their largest number.
 MARKER_LENGTH, MARKER_COUNT = 0.1, 500
-MAP_MISMATCH_TEXT = (
-    "the scan does not fit the map: are its resolution, its origin and the initial pose right?"
-)
+MAP_MISMATCH_TEXT = "the scans do not fit the map; check its resolution, its origin and the initial pose"
 
 
 class AmclTopics:
-    """The topics of amcl, and amcl_lite's own below ``~``; the latter cost nothing while nobody listens."""
+    """Publishes the topics of amcl, and further ones below ``~`` while they have subscribers."""
 
     def __init__(self, shared: LockedLocalizer):
         self._shared = shared
@@ -67,7 +65,7 @@ class AmclTopics:
         self._field.publish(grid_to_msg(field_grid, rospy.Time.now(), self._frame))
 
     def publish_quality(self, localizer: Localizer) -> None:
-        """How well the last scan fits; and, when it changes, whether the robot is lost."""
+        """Publish the fit of the last scan and changes of the localization state."""
         if localizer.quality is None:
             return
         if self._quality.get_num_connections() > 0:
@@ -78,11 +76,11 @@ class AmclTopics:
         if state != self._shown_state:
             self._shown_state = state
             self._state.publish(state)
-            say = rospy.logwarn if localizer.is_lost else rospy.loginfo
-            say("localization is %s (quality %.2f)", state, localizer.quality.probability)
+            log = rospy.logwarn if localizer.is_lost else rospy.loginfo
+            log("localization is %s (quality %.2f)", state, localizer.quality.probability)
 
     def publish_diagnostics(self, localizer: Localizer, estimate: Estimate) -> None:
-        """About once a second: the spread of the filter as amcl has it, and the quality."""
+        """Publish amcl's standard deviation status and the fit, once a second."""
         now = rospy.Time.now()
         if abs((now - self._diagnosed).to_sec()) < DIAGNOSTICS_PERIOD:
             return

@@ -1,1 +1,1 @@
-"""Scans: their beams, how well these fit the map at a pose, and the pose near by at which they fit best."""
+"""Sensor models: beams of a scan, their likelihood at a pose, and scan matching."""

@@ -1,4 +1,4 @@
-"""The beams of a scan that the sensor model looks at."""
+"""The beams of a scan that the sensor model uses."""
 
 import math
 from dataclasses import dataclass
@@ -16,11 +16,14 @@ _MANY = 400
 
 @dataclass(frozen=True, eq=False)
 class Beams:
-    """Some beams of one scan in the base frame.
+    """Selected beams of one scan in the base frame.
 
-    ``ranges``: (N,), metres, ``max_range`` where nothing was met. ``directions``: (N,), radians.
-    ``start_xy``: (2,), where the laser sits in the base frame. ``unmeasured``: how many more were looked at
-    and left out, being NaN.
+    Attributes:
+        ranges: (N,) [m]; ``max_range`` for beams without return.
+        directions: (N,) [rad].
+        max_range: Largest range [m].
+        start_xy: Position of the laser (2,) [m].
+        unmeasured: Number of selected beams that were dropped because they are NaN.
     """
 
     ranges: np.ndarray
@@ -31,20 +34,22 @@ class Beams:
 
     @cached_property
     def ends_xy(self) -> np.ndarray:
-        """Where the beams that met something end: (M, 2), in the base frame."""
+        """End points (M, 2) of the beams with a return."""
         return _ends(self.ranges, self.directions, self.max_range, self.start_xy)
 
 
 def all_beams(scan: Scan, settings: LocalizerSettings) -> Beams:
-    """The beams of a scan, every so manyth if there are very many; else as ``evenly_spaced_beams``."""
+    """Select all beams of a scan, thinned to about _MANY; otherwise as ``evenly_spaced_beams``."""
     return _beams(scan, settings, max(1, len(scan.ranges) // _MANY))
 
 
 def evenly_spaced_beams(scan: Scan, settings: LocalizerSettings) -> Beams:
-    """About ``settings.beams`` beams of a scan; those without a measurement (NaN) are left out.
+    """Select about ``settings.beams`` evenly spaced beams of a scan; NaN ranges are dropped.
 
-    Readings up to the least range mean "no return" (amcl), as do +inf and those beyond the largest range.
-    Raises LocalizationError if the scan's limits make no sense.
+    Ranges up to the minimum, above the maximum, and +inf mean "no return", as in amcl.
+
+    Raises:
+        LocalizationError: If the limits of the scan are invalid.
     """
     return _beams(scan, settings, _step(len(scan.ranges), settings))
 
@@ -56,7 +61,7 @@ def _beams(scan: Scan, settings: LocalizerSettings, step: int) -> Beams:
     if settings.laser_min_range > 0.0:
         min_range = max(min_range, settings.laser_min_range)
     if not (max_range > 0.0 and min_range >= 0.0 and np.isfinite(max_range)):
-        raise LocalizationError(f"a scan has senseless limits: range_min {min_range}, range_max {max_range}")
+        raise LocalizationError(f"invalid limits of a scan: range_min {min_range}, range_max {max_range}")
     sign = -1.0 if scan.upside_down else 1.0
     sweep = (sign * scan.angle_min, sign * scan.angle_increment, scan.laser_in_base.yaw)
     ranges, directions = _measured(scan.ranges.astype(np.float64), step, sweep, min_range, max_range)
@@ -65,7 +70,7 @@ def _beams(scan: Scan, settings: LocalizerSettings, step: int) -> Beams:
 
 
 def _step(count: int, settings: LocalizerSettings) -> int:
-    """amcl's steps from one used beam to the next; they differ from model to model."""
+    """Return amcl's step between used beams, which depends on the sensor model."""
     if settings.sensor_model == "likelihood_field_prob":
         return max(1, -(-count // max(1, settings.beams)))
     return max(1, (count - 1) // max(1, settings.beams - 1))
@@ -73,17 +78,17 @@ def _step(count: int, settings: LocalizerSettings) -> int:
 
 @numba.njit(cache=True)
 def _measured(ranges, step, sweep, min_range, max_range):
-    """Every so manyth range and its direction, if it is not NaN; ``max_range`` for those out of limits.
+    """Return every ``step``-th range that is not NaN and its direction; ``max_range`` out of limits.
 
-    ``sweep``: the first angle, from one beam to the next, and how the laser is turned in the base frame.
+    ``sweep`` is (first angle, increment, yaw of the laser in the base frame).
     """
     most, count = -(-ranges.size // step), 0
     kept, directions = np.empty(most), np.empty(most)
     first, increment, turned = sweep
     for i in range(0, ranges.size, step):
-        told = ranges[i]
-        if not math.isnan(told):
-            kept[count] = told if min_range < told <= max_range else max_range
+        value = ranges[i]
+        if not math.isnan(value):
+            kept[count] = value if min_range < value <= max_range else max_range
             directions[count] = first + increment * i + turned
             count += 1
     return kept[:count], directions[:count]
@@ -91,7 +96,7 @@ def _measured(ranges, step, sweep, min_range, max_range):
 
 @numba.njit(cache=True)
 def _ends(ranges, directions, max_range, start_xy):
-    """Where those shorter than ``max_range`` end: (M, 2)."""
+    """Return the end points (M, 2) of beams shorter than ``max_range``."""
     ends_xy, count = np.empty((ranges.size, 2)), 0
     for i in range(ranges.size):
         if ranges[i] < max_range:

@@ -1,6 +1,6 @@
-"""The contract of a sensor model of somebody's own, and what stands before it.
+"""The contract of a user-defined sensor model.
 
-It is chosen by ``sensor_plugin: my_package.my_module/MyModel`` and takes the place of ``laser_model_type``.
+``sensor_plugin: my_package.my_module/MyModel`` selects it instead of ``laser_model_type``.
 """
 
 from typing import Protocol
@@ -15,12 +15,12 @@ from planar.plugins import PluginContract
 
 
 class SensorModel(Protocol):
-    """Made for each map and whenever settings change."""
+    """A sensor model; created for each map and when settings change."""
 
     def __init__(self, grid: OccupancyGrid, settings: LocalizerSettings): ...
 
     def log_likelihoods(self, poses: np.ndarray, beams: Beams) -> np.ndarray:
-        """Natural logarithms (N,), finite, of how likely the beams are at poses (N, 3) in the map."""
+        """Return finite log-likelihoods (N,) of the beams at poses (N, 3) in the map."""
         ...
 
 
@@ -28,10 +28,10 @@ CONTRACT = PluginContract("sensor model", SensorModel, LocalizerSettings, "amcl_
 
 
 class CustomSensorModel:
-    """One of other people: what it gives is checked, what goes wrong in it is its fault."""
+    """A user-defined sensor model whose results are checked."""
 
     def __init__(self, grid: OccupancyGrid, settings: LocalizerSettings):
-        """Raises LocalizationError if it cannot be made."""
+        """Create the model. Raises LocalizationError if that fails."""
         self._custom = CustomModel(settings.sensor_plugin, CONTRACT, grid, settings)
 
     def log_likelihoods(self, poses: np.ndarray, beams: Beams) -> np.ndarray:

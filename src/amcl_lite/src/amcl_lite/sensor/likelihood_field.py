@@ -1,4 +1,4 @@
-"""The likelihood field: how well a beam's end fits the map, by where it ends."""
+"""The likelihood field of a map (Probabilistic Robotics, section 6.4)."""
 
 import math
 from dataclasses import dataclass
@@ -14,10 +14,15 @@ from planar.geometry.distance_field import distance_field
 
 
 class MapToCells(NamedTuple):
-    """How poses in the map become columns, rows and headings of a field, for kernels.
+    """Transform from map poses to columns, rows and headings of a field, for kernels.
 
-    ``col``, ``row``, ``yaw``: where the map's origin lies; ``cos``, ``sin``: of ``yaw``, in cells per metre;
-    ``scale``: cells per metre.
+    Attributes:
+        col: Column of the map's origin.
+        row: Row of the map's origin.
+        yaw: Rotation [rad].
+        cos: Cosine of ``yaw`` times ``scale``.
+        sin: Sine of ``yaw`` times ``scale``.
+        scale: Cells per metre.
     """
 
     col: float
@@ -30,10 +35,13 @@ class MapToCells(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class LikelihoodField:
-    """exp(-d^2 / 2 sigma^2) for each cell, d being its distance to the nearest obstacle (table 6.3).
+    """exp(-d^2 / 2 sigma^2) for each cell at distance d from the nearest obstacle (table 6.3).
 
-    ``fit``: float32 (rows + 2, cols + 2), 1 on an obstacle; its outermost cells stand for all that is off the
-    map. ``resolution``: metres. ``origin``: that of the map.
+    Attributes:
+        fit: float32 (rows + 2, cols + 2), 1 on obstacles; the border represents everything off the map.
+        sigma: Standard deviation [m].
+        resolution: Cell size [m].
+        origin: Pose of the map's origin.
     """
 
     fit: np.ndarray
@@ -48,16 +56,16 @@ class LikelihoodField:
         return MapToCells(col, row, yaw, scale * math.cos(yaw), scale * math.sin(yaw), scale)
 
     def pose_from_cells(self, col: float, row: float, yaw: float) -> Pose2:
-        """A pose given in cells of ``fit``, in the map."""
+        """Convert a pose in cells of ``fit`` to the map."""
         return self.origin @ Pose2((col - 1.0) * self.resolution, (row - 1.0) * self.resolution, yaw)
 
     def value_at_distance(self, distance: float) -> float:
-        """The field's value at this distance, metres, from the nearest obstacle."""
+        """Return the value at a distance from the nearest obstacle [m]."""
         return math.exp(-0.5 * (distance / self.sigma) ** 2)
 
 
 def likelihood_field(grid: OccupancyGrid, sigma: float, max_distance: float) -> LikelihoodField:
-    """The field of a map's occupied cells; distances are told apart up to ``max_distance``, metres."""
+    """Compute the field of a map's occupied cells; distances are truncated at ``max_distance`` [m]."""
     distances = distance_field(grid.cells == OCCUPIED, grid.resolution, max_distance)
     fit = np.full((grid.rows + 2, grid.cols + 2), math.exp(-0.5 * (max_distance / sigma) ** 2), np.float32)
     np.exp(-0.5 * (distances / np.float32(sigma)) ** 2, out=fit[1:-1, 1:-1])
@@ -66,7 +74,7 @@ def likelihood_field(grid: OccupancyGrid, sigma: float, max_distance: float) -> 
 
 @numba.njit(cache=True, inline="always")
 def pose_in_cells(x, y, yaw, map_to_cells):
-    """A pose in the map as column, row, and the cosine and sine of its heading in cells per metre."""
+    """Convert a map pose to column, row, and cosine and sine of its heading in cells per metre."""
     heading = yaw + map_to_cells.yaw
     return (
         map_to_cells.col + map_to_cells.cos * x - map_to_cells.sin * y,
@@ -78,11 +86,11 @@ def pose_in_cells(x, y, yaw, map_to_cells):
 
 @numba.njit(cache=True, inline="always")
 def fit_at(fit, col, row):
-    """The field's value at a place in cells, which may be off the map. Free of branches, to be vectorized."""
+    """Return the value at a position in cells, also off the map; without branches, to be vectorized."""
     i = np.int32(min(max(row, 0.0), fit.shape[0] - 1.0))
     j = np.int32(min(max(col, 0.0), fit.shape[1] - 1.0))
     return fit[i, j]
 
 
-# numba's cache index of an older version names it: unknown, it would be an error instead of a stale cache.
+# The cache index of numba from an older version contains the name; without it the index is unreadable.
 __getattr__ = deprecated_names(__name__, {"IntoCells": "MapToCells"})

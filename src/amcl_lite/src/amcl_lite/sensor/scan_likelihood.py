@@ -1,4 +1,4 @@
-"""The sensor model that the settings choose, with what it needs to know of the map."""
+"""The sensor model selected by the settings, prepared for one map."""
 
 import numpy as np
 
@@ -11,9 +11,9 @@ from planar import FREE, OCCUPIED, OccupancyGrid
 
 
 class ScanLikelihood:
-    """How likely a scan is at poses in one map; ``field``: the map's likelihood field.
+    """Log-likelihoods of scans in one map; ``field`` is the map's likelihood field.
 
-    Raises LocalizationError for what goes wrong in a sensor model of somebody's own.
+    Raises LocalizationError if a user-defined sensor model fails.
     """
 
     def __init__(self, grid: OccupancyGrid, settings: LocalizerSettings):
@@ -25,7 +25,7 @@ class ScanLikelihood:
         self._opaque_grid = _opaque(grid) if settings.sensor_model == "beam" else None
 
     def log_likelihoods(self, poses: np.ndarray, beams: Beams, has_converged: bool) -> np.ndarray:
-        """Logarithms (N,) for particles (N, 3); beams are skipped only when these ``has_converged``."""
+        """Return log-likelihoods (N,) of particles (N, 3); beams are skipped only after convergence."""
         settings = self._settings
         if self._custom is not None:
             return self._custom.log_likelihoods(poses, beams)
@@ -38,7 +38,7 @@ class ScanLikelihood:
 
 
 def _opaque(grid: OccupancyGrid) -> OccupancyGrid:
-    """A grid on which amcl's rays end at anything that is not free."""
+    """Mark all cells that are not free as occupied, since rays of amcl end there."""
     cells = np.full_like(grid.cells, OCCUPIED)
     cells[grid.cells == FREE] = FREE
     return OccupancyGrid(cells, grid.resolution, grid.origin)

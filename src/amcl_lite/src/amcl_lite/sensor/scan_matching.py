@@ -2,7 +2,7 @@
 
 Gauss-Newton on the likelihood field, interpolated between cells (Kohlbrecher et al., "A flexible and scalable
 SLAM system with full 3D motion estimation", 2011), with the guess's own covariance as a prior: where the map
-says nothing, as along a corridor, the guess stands.
+gives no information, as along a corridor, the guess is kept.
 """
 
 import math
@@ -13,36 +13,45 @@ import numpy as np
 from amcl_lite.sensor.likelihood_field import LikelihoodField, pose_in_cells
 from planar import Pose2
 
-# Standard deviation of a beam's misfit (1 - fit) at the right pose; what a typical lidar and map leave over.
+# Standard deviation of a beam's misfit (1 - fit) at the correct pose, for a typical lidar and map.
 _MISFIT_SPREAD = 0.25
-# The field to this power is one of half the sigma: what stands before a wall does not pull at the pose any
-# more.
+# The field to this power has half the sigma: objects in front of a wall then have no influence.
 _SHARPNESS = 4
-# The descent ends after so many steps, or with one shorter than this: cells, and radians.
+# The descent ends after so many steps, or with a step shorter than this [cells, rad].
 _STEPS, _SMALL_STEP, _SMALL_TURN = 10, 0.01, 1e-4
-# A match farther from the guess than so many standard deviations, and than these (cells are added as metres,
-# and radians) would explain, is that of something that is not on the map with another wall.
-_FARTHEST, _UNSURE = 4.0, 0.05
-# Two descents that end this near to each other, in cells, have found the same place.
+# A match farther from the guess than so many standard deviations, enlarged by _MARGIN [m, rad], is rejected:
+# it matches an unmapped object with another wall.
+_FARTHEST, _MARGIN = 4.0, 0.05
+# Two descents that end this close to each other have found the same pose [cells].
 _SAME_PLACE = 0.5
 
 
 def match_scan(guess: Pose2, covariance: np.ndarray, points_xy: np.ndarray, field: LikelihoodField) -> Pose2:
-    """The most probable pose near a guess with ``covariance`` (3, 3); beam ends (N, 2) in the base frame."""
+    """Find the most probable pose near a guess.
+
+    Args:
+        guess: First guess of the base in the map.
+        covariance: Covariance (3, 3) of the guess [m^2, rad^2].
+        points_xy: End points of the beams (N, 2) in the base frame [m].
+        field: Likelihood field of the map.
+
+    Returns:
+        The matched pose, or the guess if no match is close enough.
+    """
     into = field.map_to_cells
     jacobian = np.array(((into.cos, -into.sin, 0.0), (into.sin, into.cos, 0.0), (0.0, 0.0, 1.0)))
     spread = jacobian @ covariance @ jacobian.T + np.diag((1e-3, 1e-3, 1e-6))
-    unsure = np.diag((_UNSURE * into.scale, _UNSURE * into.scale, _UNSURE)) ** 2
+    margin = np.diag((_MARGIN * into.scale, _MARGIN * into.scale, _MARGIN)) ** 2
     return field.pose_from_cells(
-        *_matched(guess.x, guess.y, guess.yaw, spread, unsure, points_xy, into, field.fit)
+        *_matched(guess.x, guess.y, guess.yaw, spread, margin, points_xy, into, field.fit)
     )
 
 
 @numba.njit(cache=True)
-def _matched(x, y, yaw, spread, unsure, points_xy, map_to_cells, fit):
-    """The better of two sharp matches: one from the guess itself, one from where a blunt match leads.
+def _matched(x, y, yaw, spread, margin, points_xy, map_to_cells, fit):
+    """Return the better of two matches: from the guess, and from the result on the smooth field.
 
-    The guess itself if neither is near enough to it.
+    Returns the guess if neither is close enough to it.
     """
     col, row, _, _ = pose_in_cells(x, y, yaw, map_to_cells)
     start, prior, points = (
@@ -50,7 +59,7 @@ def _matched(x, y, yaw, spread, unsure, points_xy, map_to_cells, fit):
         _inverse(spread),
         points_xy * map_to_cells.scale,
     )
-    belief = _inverse(spread + unsure)
+    belief = _inverse(spread + margin)
     near, near_cost = _descended(start, start, prior, points, fit, _SHARPNESS)
     if not _is_within_reach(near, start, belief):
         near, near_cost = start, np.inf
@@ -70,7 +79,7 @@ def _is_within_reach(pose, start, belief):
 
 @numba.njit(cache=True)
 def _descended(first, start, prior, points, fit, sharpness):
-    """The best pose on the way down from ``first``, and its cost."""
+    """Descend from ``first`` and return the best pose and its cost."""
     pose = best = first
     best_cost = np.inf
     for _ in range(_STEPS):
@@ -127,7 +136,7 @@ def _interpolated(fit, col, row):
 
 @numba.njit(cache=True)
 def _inverse(matrix):
-    """The inverse of a (3, 3); LAPACK would wake all processors for it."""
+    """Invert a (3, 3) matrix without LAPACK, which would start threads."""
     cofactors = np.empty((3, 3))
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3

@@ -1,6 +1,6 @@
-"""Sensor models: how likely a scan is at each particle (Probabilistic Robotics, chapter 6; amcl's weights).
+"""Sensor models (Probabilistic Robotics, chapter 6, with the weights of amcl).
 
-All return natural logarithms, since a product of many beams underflows.
+All return log-likelihoods, since a product over many beams underflows.
 """
 
 import math
