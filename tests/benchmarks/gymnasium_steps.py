@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Measures the Gymnasium environments: steps a second beside PyBullet's own limit, resets, processes.
+"""Measures the Gymnasium environments: step rate compared with that of PyBullet alone, resets, processes.
 
-The limit is what PyBullet alone takes for the same steps of physics: an episode is played, then begun again
-with nothing but what its motors were set to. Each is measured in turns; the median of CPU time counts.
+The limit is the rate of the same physics steps in PyBullet alone: an episode is run, then repeated with only
+its recorded motor commands. Both are measured in turn; the median of CPU time counts.
 
 python3 tests/benchmarks/gymnasium_steps.py [--json FILE] [ENVIRONMENT ...]
 """
@@ -27,15 +27,15 @@ from sim_bridge import Simulation
 from sim_bridge.driving.drive import BASE_RATE
 from sim_bridge.simulation import ROBOT_NAME
 
-BLOCKS, PERIODS, RESETS = 15, 100, 30
+REPETITIONS, PERIODS, RESETS = 15, 100, 30
 PAIRS, SECONDS = 5, 5.0
-# The world that is measured, of environments that have many.
+# Seed of the world, for environments with several.
 WORLD = 2
 
 
 @dataclass(frozen=True)
 class Measurement:
-    """Steps a second, resets in ms in a world that is built; ``share``: of the limit."""
+    """Steps per second, reset times in a built world [ms]; ``share``: of the limit."""
 
     environment: str
     beams: int
@@ -62,15 +62,18 @@ def main() -> int:
             flush=True,
         )
     name = options.environments[0]
-    two = {"each on its own": efficiency(apart, name), "in gymnasium's lock-step": efficiency(in_step, name)}
+    two = {
+        "each on its own": efficiency(independent_throughput, name),
+        "in gymnasium's lock-step": efficiency(synchronised_throughput, name),
+    }
     for how, (alone, both) in two.items():
         print(
             f"{name}, {how}: one process {alone:.0f}, two processes {both:.0f} steps/s, "
             f"efficiency {both / alone / 2.0:.2f} (median of {PAIRS} pairs)"
         )
     if options.json:
-        told = {"environments": [asdict(one) for one in measured], "processes": two}
-        options.json.write_text(json.dumps(told, indent=2) + "\n")
+        results = {"environments": [asdict(one) for one in measured], "processes": two}
+        options.json.write_text(json.dumps(results, indent=2) + "\n")
     return 0
 
 
@@ -80,50 +83,50 @@ def measure(name: str) -> Measurement:
     env.reset(seed=0, options=world)
     env.action_space.seed(0)
     simulation = env._simulation._simulation  # type: ignore[attr-defined]
-    taken: List[float] = []
-    least: List[float] = []
-    for seed in range(BLOCKS + 1):
+    step_seconds: List[float] = []
+    physics_seconds: List[float] = []
+    for seed in range(REPETITIONS + 1):
         actions = [env.action_space.sample() for _ in range(PERIODS)]
         env.reset(seed=seed, options=world)
-        with motors_of(simulation) as speeds:
-            count = play(env, actions)
+        with recorded_motor_commands(simulation) as speeds:
+            count = run_episode(env, actions)
         env.reset(seed=seed, options=world)
-        taken.append(cpu_seconds(partial(play, env, actions)) / count)
+        step_seconds.append(cpu_seconds(partial(run_episode, env, actions)) / count)
         env.reset(seed=seed, options=world)
-        least.append(cpu_seconds(partial(replay, simulation, speeds)) / count)
-    for _ in range(RESETS):  # the ways of a home are looked for once
+        physics_seconds.append(cpu_seconds(partial(replay, simulation, speeds)) / count)
+    for _ in range(RESETS):  # fills the cache of paths
         env.reset(options=world)
     resets = [1e3 * cpu_seconds(lambda: env.reset(options=world)) for _ in range(RESETS)]
     scan = simulation.step().scan
     env.close()
-    step, bound = statistics.median(taken[1:]), statistics.median(least[1:])
+    step, bound = statistics.median(step_seconds[1:]), statistics.median(physics_seconds[1:])
     return Measurement(
         name, len(scan.ranges), 1 / step, 1 / bound, bound / step, statistics.median(resets), max(resets)
     )
 
 
-def play(env: gymnasium.Env, actions: List[Any]) -> int:
-    """Steps until the actions or the episode are over; how many those were."""
+def run_episode(env: gymnasium.Env, actions: List[Any]) -> int:
+    """Step until the actions or the episode end; return the number of steps."""
     return next((count for count, action in enumerate(actions, start=1) if env.step(action)[2]), len(actions))
 
 
 @contextlib.contextmanager
-def motors_of(simulation: Simulation) -> Iterator[List[Tuple[float, float]]]:
-    """Keeps what the motors are set to each time."""
+def recorded_motor_commands(simulation: Simulation) -> Iterator[List[Tuple[float, float]]]:
+    """Record the motor commands."""
     vehicle = simulation.scene.robot(ROBOT_NAME).vehicle
     speeds: List[Tuple[float, float]] = []
     drive = vehicle.drive
 
-    def kept(left: float, right: float) -> None:
+    def record(left: float, right: float) -> None:
         speeds.append((left, right))
         drive(left, right)
 
-    with patch.object(vehicle, "drive", kept):
+    with patch.object(vehicle, "drive", record):
         yield speeds
 
 
 def replay(simulation: Simulation, speeds: List[Tuple[float, float]]) -> None:
-    """The same steps of physics, one by one, without all else."""
+    """Repeat only the physics steps."""
     engine, vehicle = simulation.scene._engine, simulation.scene.robot(ROBOT_NAME).vehicle
     count = simulation.scene.settings.physics_rate // BASE_RATE
     for left, right in speeds:
@@ -133,44 +136,44 @@ def replay(simulation: Simulation, speeds: List[Tuple[float, float]]) -> None:
 
 
 def cpu_seconds(do: Callable[[], object]) -> float:
-    began = time.process_time()
+    start = time.process_time()
     do()
-    return time.process_time() - began
+    return time.process_time() - start
 
 
 def efficiency(throughput: Callable[[str, int], float], name: str) -> Tuple[float, float]:
-    """Steps a second, by the clock, of one process and of two: the middle one of some pairs in turn."""
+    """Steps per second of wall-clock time of one and of two processes: the median of several pairs."""
     pairs = [(throughput(name, 1), throughput(name, 2)) for _ in range(PAIRS)]
     return sorted(pairs, key=lambda pair: pair[1] / pair[0])[PAIRS // 2]
 
 
-def apart(name: str, processes: int) -> float:
-    """Of environments that do not wait for each other, as for learning from whole episodes."""
+def independent_throughput(name: str, processes: int) -> float:
+    """Total rate of environments that do not wait for each other."""
     forks = multiprocessing.get_context("fork")
-    barrier, told = forks.Barrier(processes), forks.Queue()
-    workers = [forks.Process(target=work, args=(name, barrier, told)) for _ in range(processes)]
+    barrier, results = forks.Barrier(processes), forks.Queue()
+    workers = [forks.Process(target=measure_steps, args=(name, barrier, results)) for _ in range(processes)]
     for worker in workers:
         worker.start()
-    rate = sum(told.get(timeout=60.0) for _ in workers)
+    rate = sum(results.get(timeout=60.0) for _ in workers)
     for worker in workers:
         worker.join()
     return rate
 
 
-def work(name: str, barrier: Any, told: Any) -> None:
-    """Plays until the time is over, and tells the steps a second."""
+def measure_steps(name: str, barrier: Any, results: Any) -> None:
+    """Run steps for a fixed time; report the steps per second."""
     env = gymnasium.make(f"home_service_gym:{name}")
     env.reset(seed=0)
     env.action_space.seed(0)
-    play_on(env, PERIODS)
+    run_steps(env, PERIODS)
     barrier.wait()
-    began, count = time.perf_counter(), 0
-    while time.perf_counter() - began < SECONDS:
-        count += play_on(env, 10)
-    told.put(count / (time.perf_counter() - began))
+    start, count = time.perf_counter(), 0
+    while time.perf_counter() - start < SECONDS:
+        count += run_steps(env, 10)
+    results.put(count / (time.perf_counter() - start))
 
 
-def play_on(env: gymnasium.Env, periods: int) -> int:
+def run_steps(env: gymnasium.Env, periods: int) -> int:
     for _ in range(periods):
         _, _, is_over, is_late, _ = env.step(env.action_space.sample())
         if is_over or is_late:
@@ -178,18 +181,18 @@ def play_on(env: gymnasium.Env, periods: int) -> int:
     return periods
 
 
-def in_step(name: str, processes: int) -> float:
-    """Of environments each of which waits for the others at every step."""
+def synchronised_throughput(name: str, processes: int) -> float:
+    """Total rate of environments that wait for each other at every step."""
     envs = gymnasium.make_vec(f"home_service_gym:{name}", num_envs=processes, vectorization_mode="async")
     envs.reset(seed=0)
     envs.action_space.seed(0)
     for _ in range(PERIODS):
         envs.step(envs.action_space.sample())
-    began, count = time.perf_counter(), 0
-    while time.perf_counter() - began < SECONDS:
+    start, count = time.perf_counter(), 0
+    while time.perf_counter() - start < SECONDS:
         envs.step(envs.action_space.sample())
         count += processes
-    rate = count / (time.perf_counter() - began)
+    rate = count / (time.perf_counter() - start)
     envs.close()
     return rate
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Drives a simulated TurtleBot between random places of a home, without ROS, and says how well it went.
+"""Drives a simulated TurtleBot between random places of a home, without ROS, and measures the result.
 
 It localizes itself from scans and drifting odometry; the truth is for the starting pose and the referee.
 
@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import List, Optional, Set
 
 import numpy as np
-from helpers.home_scenes import add_box, places
-from helpers.walkers import MOVING, Walker, add_walkers
+from helpers.home_scenes import add_box, random_poses
+from helpers.walkers import MIN_MOVING_SPEED, Walker, add_walkers
 
 from amcl_lite import Localizer, LocalizerSettings
 from amcl_lite.config import InitialPose
@@ -29,8 +29,8 @@ from sim_bridge.world import World
 
 ROOT = Path(__file__).resolve().parents[2]
 LOCALIZATION_CONFIG = ROOT / "src" / "amcl_lite" / "config" / "turtlebot.yaml"
-# Steps of the simulation for which a person stays where it is.
-STEPS_OF_WALKERS = 2
+# Simulation steps between two updates of the pedestrians.
+WALKER_PERIOD_STEPS = 2
 
 
 @dataclass(frozen=True)
@@ -71,15 +71,15 @@ def main() -> int:
 
 def _drive(pair: int, options, settings: NavigatorSettings, grid: OccupancyGrid, world: World) -> Run:
     rng = np.random.default_rng([options.seed, pair])
-    start, goal = places(settings, grid, rng, 2)
+    start, goal = random_poses(settings, grid, rng, 2)
     simulation = Simulation(world, ROBOTS[options.robot], seed=pair, base_in_world=start)
     for number in range(options.boxes):
         add_box(simulation, f"box_{number}", settings, grid, rng, keep_free=(start, goal))
-    ends = places(settings, grid, rng, 2 * options.walkers)
+    ends = random_poses(settings, grid, rng, 2 * options.walkers)
     walkers = add_walkers(simulation, options.walkers, settings, grid, ends, start, rng, options.heedless)
     try:
         localizer = _localizer_at(start, grid, options.seed)
-        run = _pursue(pair, options, simulation, localizer, Navigator(settings, grid), goal, walkers)
+        run = _drive_to(pair, options, simulation, localizer, Navigator(settings, grid), goal, walkers)
     finally:
         simulation.close()
     touched = f", touched {', '.join(run.touched)}" if run.touched else ""
@@ -98,7 +98,7 @@ def _localizer_at(start: Pose2, grid: OccupancyGrid, seed: int) -> Localizer:
     return localizer
 
 
-def _pursue(
+def _drive_to(
     pair: int,
     options,
     simulation: Simulation,
@@ -122,11 +122,11 @@ def _pursue(
         if localizer.odom_in_map is not None:
             base_in_odom = observation.odometry.base_in_odom
             base_in_map = localizer.odom_in_map @ base_in_odom
-            began = time.process_time()
+            start = time.process_time()
             decision = navigator.tick(
                 observation.stamp, base_in_map, base_in_odom, observation.odometry.twist, scan
             )
-            tick_ms.append(1e3 * (time.process_time() - began))
+            tick_ms.append(1e3 * (time.process_time() - start))
             command, scan = decision.command, None
             recoveries += decision.recovery is not None
             if decision.plan_xy is not None and not planned:
@@ -134,15 +134,15 @@ def _pursue(
             if decision.status.is_final:
                 break
         for step in range(period):
-            for walker in walkers if step % STEPS_OF_WALKERS == 0 else ():
-                walker.walk(observation.base_in_world, STEPS_OF_WALKERS * simulation.step_seconds)
+            for walker in walkers if step % WALKER_PERIOD_STEPS == 0 else ():
+                walker.walk(observation.base_in_world, WALKER_PERIOD_STEPS * simulation.step_seconds)
             observation = simulation.step(command)
             command = None
             if observation.scan is not None:
                 scan = observation.scan
                 localizer.update(observation.odometry.base_in_odom, scan)
             for name in observation.contacts:
-                stands = name in people and abs(observation.odometry.twist.v) < MOVING
+                stands = name in people and abs(observation.odometry.twist.v) < MIN_MOVING_SPEED
                 (bumped_into if stands else touched).add(name)
         driven += last.distance_to(observation.base_in_world)
         last = observation.base_in_world

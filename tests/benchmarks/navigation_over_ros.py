@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Drives a simulated TurtleBot between random places of a home by any node that is a move_base.
+"""Drives a simulated TurtleBot between random places of a home with any move_base node.
 
 The node gets drifting odometry, scans and, as from a perfect localization, the true map -> odom. The official
-move_base is compared where it is installed:
+move_base can be compared if it is installed:
 
     python3 tests/benchmarks/navigation_over_ros.py --pairs 20
     python3 tests/benchmarks/navigation_over_ros.py --pairs 20 --node move_base/move_base
@@ -18,8 +18,8 @@ from typing import List, Set
 import actionlib
 import numpy as np
 import psutil
-from helpers.home_scenes import add_box, places
-from helpers.robot_over_ros import RobotOverRos, add_node_options, client_with_goal, is_under_way, move_base
+from helpers.home_scenes import add_box, random_poses
+from helpers.robot_over_ros import RobotOverRos, add_node_options, client_with_goal, is_active, move_base
 
 from move_base_lite import load_settings
 from planar import Pose2, load_map
@@ -48,33 +48,33 @@ def main() -> int:
         robot, runs = RobotOverRos(options.speed, grid), []
         for pair in range(options.pairs):
             rng = np.random.default_rng([options.seed, pair])
-            start, goal = places(settings, grid, rng, 2)
+            start, goal = random_poses(settings, grid, rng, 2)
             simulation = Simulation(world, seed=pair, base_in_world=start)
             for number in range(options.boxes):
                 add_box(simulation, f"box_{number}", settings, grid, rng, keep_free=(start, goal))
-            robot.put(simulation)
-            runs.append(_pursue(robot, goal, psutil.Process(node.pid), options.limit))
+            robot.switch_simulation(simulation)
+            runs.append(_drive_to(robot, goal, psutil.Process(node.pid), options.limit))
             print(pair, runs[-1], flush=True)
         print(json.dumps(_summary(runs), indent=2))
     return 0
 
 
-def _pursue(robot: RobotOverRos, goal: Pose2, process: psutil.Process, limit: float) -> Run:
+def _drive_to(robot: RobotOverRos, goal: Pose2, process: psutil.Process, limit: float) -> Run:
     client = client_with_goal(robot, "map", goal)
-    cpu, began = sum(process.cpu_times()[:2]), robot.now
+    cpu, start = sum(process.cpu_times()[:2]), robot.now
     last, driven = robot.observation.base_in_world, 0.0
     touched: Set[str] = set()
-    while robot.now - began < limit and is_under_way(client):
+    while robot.now - start < limit and is_active(client):
         robot.step()
         touched.update(robot.observation.contacts)
         driven += last.distance_to(robot.observation.base_in_world)
         last = robot.observation.base_in_world
     state = client.get_state()
-    if is_under_way(client):
+    if is_active(client):
         client.cancel_all_goals()
     return Run(
         actionlib.GoalStatus.to_string(state),
-        robot.now - began,
+        robot.now - start,
         driven,
         last.distance_to(goal),
         sorted(touched),
@@ -99,7 +99,7 @@ def _options():
     add_node_options(parser, CONFIG)
     parser.add_argument("--pairs", type=int, default=20, help="number of random pairs of start and goal")
     parser.add_argument("--boxes", type=int, default=0, help="boxes that the map does not show")
-    parser.add_argument("--seed", type=int, default=0, help="of all chance")
+    parser.add_argument("--seed", type=int, default=0, help="seed of all random numbers")
     parser.add_argument("--limit", type=float, default=120.0, help="simulated seconds a drive may take")
     parser.add_argument("--world", default=ROOT / "map" / "home.world", help="SDF file of the world")
     parser.add_argument("--map", default=ROOT / "map" / "home.yaml", help="map_server file of its map")

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Plans between random places of a map and says how long that takes and how long the plans are.
+"""Plans between random places of a map; measures computing time and plan length.
 
     python3 tests/benchmarks/planning.py MAP.yaml --size 1000 --pairs 100
 
-Another planner is compared by two files. --export writes costs and pairs: int32 cols, rows; uint8 costs;
-int32 count; int32 start col, start row, goal col, goal row of each. --compare reads what that planner has
-made of them, a line each: points of the plan (0: none), milliseconds, length in cells.
+Another planner can be compared through two files. --export writes costs and pairs: int32 cols, rows; uint8
+costs; int32 count; int32 start col, start row, goal col, goal row of each. --compare reads the results of
+that planner, a line each: points of the plan (0: none), milliseconds, length in cells.
 """
 
 import argparse
@@ -33,9 +33,9 @@ PARAMETERS = {
         "inflation_layer": {"inflation_radius": 0.6, "cost_scaling_factor": 5.0},
     }
 }
-# Cost below which a place is free enough to start or end at.
-OPEN = 128
-HOW = {
+# Cost below which a cell may be start or goal.
+FREE_COST = 128
+VARIANTS = {
     "wavefront": NavfnSettings(),
     "A*": NavfnSettings(use_astar=True),
     "any angle": NavfnSettings(any_angle=True),
@@ -50,7 +50,7 @@ def main() -> int:
     pairs = _pairs(costmap.costs, options.pairs, np.random.default_rng(options.seed))
     if options.export:
         _export(options.export, costmap.costs, pairs)
-    figures = {name: _measure(costmap, pairs, settings) for name, settings in HOW.items()}
+    figures = {name: _measure(costmap, pairs, settings) for name, settings in VARIANTS.items()}
     table = {name: _row(times, lengths) for name, (times, lengths) in figures.items()}
     if options.compare:
         other = np.loadtxt(options.compare).reshape(-1, 3)
@@ -101,7 +101,7 @@ def _of_size(grid: OccupancyGrid, size: int) -> OccupancyGrid:
 
 def _pairs(costs: np.ndarray, count: int, rng) -> np.ndarray:
     """Starts and goals (N, 4) as (col, row, col, row), in the largest connected part of the open cells."""
-    regions, _ = label(costs < OPEN)
+    regions, _ = label(costs < FREE_COST)
     largest = 1 + int(np.argmax(np.bincount(regions.ravel())[1:]))
     cells = np.argwhere(regions == largest)[:, ::-1]
     return cells[rng.integers(len(cells), size=(count, 2))].reshape(count, 4).astype(np.int32)

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Measures what it costs that a planner is somebody else's: guarded, and found by its name.
+"""Measures the overhead of a local planner plugin: its guard, and its loading by name.
 
-A robot drives to the pick-up zone of the home, in one process. What the guard takes is what a call through it
-takes beyond the call of the planner in it.
+A robot drives to the pick-up zone of the home, in one process. The overhead of the guard is the duration of a
+call through it minus that of the planner.
 
 python3 tests/benchmarks/plugin_cost.py [--json FILE] [PLANNER ...]
 """
@@ -28,7 +28,7 @@ from sim_bridge import Simulation, load_world
 
 ROOT = Path(__file__).resolve().parents[2]
 CONFIG = ROOT / "src" / "move_base_lite" / "config" / "turtlebot.yaml"
-GOAL, SEED, STEPS, MOST_TICKS = Pose2(2.0, 3.0, 0.0), 3, 5, 1000
+GOAL, SEED, STEPS, MAX_TICKS = Pose2(2.0, 3.0, 0.0), 3, 5, 1000
 PLANNERS = ("plugin_examples.pure_pursuit/PurePursuit", "plugin_examples.critics/Critics")
 
 
@@ -63,23 +63,23 @@ def main() -> int:
 
 
 def measure(name: str) -> Measurement:
-    begun = time.perf_counter()
+    start = time.perf_counter()
     settings = load_settings(CONFIG, base_local_planner=name)
-    load_ms = 1e3 * (time.perf_counter() - begun)
-    begun = time.perf_counter()
+    load_ms = 1e3 * (time.perf_counter() - start)
+    start = time.perf_counter()
     load_settings(CONFIG)
-    load_ms -= 1e3 * (time.perf_counter() - begun)
+    load_ms -= 1e3 * (time.perf_counter() - start)
     warm_up(settings)
-    kind, spent = load_object(name), Spent()
-    with patch.object(kind, "follow", spent.timed("planner", kind.follow)), patch.object(
-        GuardedLocalPlanner, "follow", spent.timed("guarded", GuardedLocalPlanner.follow)
-    ), patch.object(Navigator, "tick", spent.timed("tick", Navigator.tick)):
+    kind, call_times = load_object(name), CallTimes()
+    with patch.object(kind, "follow", call_times.timed("planner", kind.follow)), patch.object(
+        GuardedLocalPlanner, "follow", call_times.timed("guarded", GuardedLocalPlanner.follow)
+    ), patch.object(Navigator, "tick", call_times.timed("tick", Navigator.tick)):
         drive(Navigator(settings, load_map(ROOT / "map" / "home.yaml")))
-    guarded, planner = (np.array(spent.ms[what]) for what in ("guarded", "planner"))
-    tick_ms, guard_ms = float(np.median(spent.ms["tick"])), float(np.median(guarded - planner))
+    guarded, planner = (np.array(call_times.ms[what]) for what in ("guarded", "planner"))
+    tick_ms, guard_ms = float(np.median(call_times.ms["tick"])), float(np.median(guarded - planner))
     return Measurement(
         name,
-        len(spent.ms["tick"]),
+        len(call_times.ms["tick"]),
         tick_ms,
         float(np.median(planner)),
         guard_ms,
@@ -88,21 +88,21 @@ def measure(name: str) -> Measurement:
     )
 
 
-class Spent:
-    """``ms``: what each call took, by what is timed."""
+class CallTimes:
+    """Durations of calls by name [ms]."""
 
     def __init__(self) -> None:
         self.ms: Dict[str, List[float]] = {}
 
     def timed(self, what: str, call: Callable) -> Callable:
-        told = self.ms.setdefault(what, [])
+        times_ms = self.ms.setdefault(what, [])
 
         def timed_call(*arguments, **named):
-            begun = time.perf_counter()
+            start = time.perf_counter()
             try:
                 return call(*arguments, **named)
             finally:
-                told.append(1e3 * (time.perf_counter() - begun))
+                times_ms.append(1e3 * (time.perf_counter() - start))
 
         return timed_call
 
@@ -114,7 +114,7 @@ def drive(navigator: Navigator) -> None:
     )
     navigator.set_goal(GOAL)
     command = None
-    for _ in range(MOST_TICKS):
+    for _ in range(MAX_TICKS):
         scan = None
         for _ in range(STEPS):
             observation = simulation.step(command)

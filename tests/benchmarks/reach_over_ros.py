@@ -14,7 +14,7 @@ import json
 import sys
 
 import numpy as np
-from helpers.robot_over_ros import RobotOverRos, add_node_options, client_with_goal, is_under_way, move_base
+from helpers.robot_over_ros import RobotOverRos, add_node_options, client_with_goal, is_active, move_base
 
 from laboratory.scenario.seeds import parse_seeds
 from laboratory.statistics.summary import share
@@ -49,10 +49,10 @@ def main() -> int:
 
 def _drive(robot: RobotOverRos, simulation: Simulation, scenario):
     """Return outcome and duration [simulated s] of a run; time counts from the goal on."""
-    robot.put(simulation)
+    robot.switch_simulation(simulation)
     client = client_with_goal(robot, "odom", scenario.task.goal)
-    began, goal, outcome = robot.now, scenario.start @ scenario.task.goal, "timeout"
-    while robot.now - began < scenario.seconds:
+    start, goal, outcome = robot.now, scenario.start @ scenario.task.goal, "timeout"
+    while robot.now - start < scenario.seconds:
         robot.step()
         if robot.observation.contacts:
             outcome = "collision"
@@ -60,11 +60,11 @@ def _drive(robot: RobotOverRos, simulation: Simulation, scenario):
         if robot.observation.base_in_world.distance_to(goal) <= scenario.task.radius:
             outcome = "success"
             break
-        if not is_under_way(client):
+        if not is_active(client):
             outcome = "aborted"
             break
     client.cancel_all_goals()
-    return outcome, robot.now - began
+    return outcome, robot.now - start
 
 
 def _summary(runs) -> dict:

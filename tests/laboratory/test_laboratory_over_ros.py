@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The graph of nodes plays scenarios of the laboratory."""
+"""Scenarios run as a graph of ROS nodes."""
 
 import csv
 import os
@@ -20,16 +20,16 @@ RUN_SECONDS, START_SECONDS, END_SECONDS, LEFT_SECONDS = 200.0, 90.0, 60.0, 20.0
 
 
 class OverRosTest(unittest.TestCase):
-    def test_a_campaign_keeps_what_the_nodes_did(self):
+    def test_a_campaign_stores_the_results_of_the_nodes(self):
         with tempfile.TemporaryDirectory() as folder:
             campaign = _campaign(folder, "home_boxes", "fields", "--seeds", "4")
-            said, _ = campaign.communicate(timeout=RUN_SECONDS)
-            self.assertEqual(campaign.returncode, 2, said)
-            self.assertIn("the task reach is played in one process only", said)
+            output, _ = campaign.communicate(timeout=RUN_SECONDS)
+            self.assertEqual(campaign.returncode, 2, output)
+            self.assertIn("the task reach runs in one process only", output)
             with (Path(folder) / "results.csv").open(encoding="utf-8") as table:
                 (row,) = csv.DictReader(table)
         print(f"{row['outcome']}: at most {row['localization_max']} m off, {row['driven']} m driven")
-        self.assertEqual(row["outcome"], "success", said)
+        self.assertEqual(row["outcome"], "success", output)
         self.assertLess(float(row["localization_max"]), 0.2)
         self.assertGreater(float(row["driven"]), 0.9 * float(row["way"]))
 
@@ -39,8 +39,8 @@ class OverRosTest(unittest.TestCase):
             campaign = _campaign(folder, "home_mission", "--seeds", "4", HOME_SERVICE_TEST=mark)
             wait_until("move_base", lambda: _has_move_base(mark), START_SECONDS)
             campaign.send_signal(signal.SIGINT)
-            said, _ = campaign.communicate(timeout=END_SECONDS)
-            self.assertEqual(campaign.returncode, 130, said)
+            output, _ = campaign.communicate(timeout=END_SECONDS)
+            self.assertEqual(campaign.returncode, 130, output)
             wait_until("the end of all nodes", lambda: not processes_with(mark), LEFT_SECONDS)
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A campaign over two hosts with one scheduler comes to what one process comes to, bit for bit."""
+"""A campaign on two hosts with one scheduler gives the results of one process, bit for bit."""
 
 import os
 import subprocess
@@ -27,8 +27,8 @@ happens: {{people: 2}}
 limits: {{seconds: 4}}
 """
 START_SECONDS, CAMPAIGN_SECONDS = 90.0, 150.0
-# Who is there, by their addresses.
-WHO = """\
+# Prints the addresses of all workers.
+LIST_WORKERS = """\
 import sys
 from distributed import Client
 print(*Client(sys.argv[1], timeout=5).scheduler_info(n_workers=-1)["workers"])
@@ -37,7 +37,7 @@ print(*Client(sys.argv[1], timeout=5).scheduler_info(n_workers=-1)["workers"])
 
 @unittest.skipUnless(os.geteuid() == 0, "only root can make network namespaces")
 class LaboratoryOnTwoHostsTest(unittest.TestCase):
-    def test_two_hosts_make_what_one_process_makes(self):
+    def test_two_hosts_give_the_results_of_one_process(self):
         with tempfile.TemporaryDirectory() as name, NetworkLink() as link:
             folder, scheduler = Path(name), f"tcp://{link.desk.address}:{PORT}"
             (folder / "errand.yaml").write_text(SCENARIO)
@@ -55,14 +55,14 @@ class LaboratoryOnTwoHostsTest(unittest.TestCase):
             self.assertEqual(self.results_in(folder), self.results_here(folder))
 
     def wait_for_workers(self, link, scheduler):
-        """Until there is one on each host."""
-        deadline, told = time.monotonic() + START_SECONDS, ""
+        """Wait until each host has a worker."""
+        deadline, workers = time.monotonic() + START_SECONDS, ""
         while time.monotonic() < deadline:
-            ask = ("ip", "netns", "exec", link.desk.name, sys.executable, "-c", WHO, scheduler)
-            told = subprocess.run(ask, capture_output=True, text=True, timeout=START_SECONDS).stdout
-            if link.desk.address in told and link.robot.address in told:
+            ask = ("ip", "netns", "exec", link.desk.name, sys.executable, "-c", LIST_WORKERS, scheduler)
+            workers = subprocess.run(ask, capture_output=True, text=True, timeout=START_SECONDS).stdout
+            if link.desk.address in workers and link.robot.address in workers:
                 return
-        self.fail(f"not both workers have come within {START_SECONDS:g} s: {told or 'none'}")
+        self.fail(f"not both workers connected within {START_SECONDS:g} s: {workers or 'none'}")
 
     def results_in(self, folder):
         store = ResultStore(folder / "results.sqlite")

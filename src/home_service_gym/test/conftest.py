@@ -1,4 +1,4 @@
-"""What gymnasium.sh, and the cockpit, install when they are first used is not there everywhere."""
+"""Skips tests whose packages are installed only on the first use of gymnasium.sh or the cockpit."""
 
 from importlib.util import find_spec
 

@@ -1,4 +1,4 @@
-"""render_mode "human": a page in the browser shows what an environment goes through."""
+"""render_mode "human": a browser page shows the environment."""
 
 import re
 import sys
@@ -18,12 +18,12 @@ STEPS = 10
 
 
 def wait_for_page(env, capsys):
-    """The page of an environment that has just been reset."""
+    """Connect to the page of an environment that has just been reset."""
     return PageClient(re.search(r"environment: (\S+)", capsys.readouterr().out).group(1))
 
 
-def seen_after_a_step(env, page):
-    """How many pictures there were so far; another episode begins where one ends."""
+def images_after_a_step(env, page):
+    """Step, resetting if the episode ends; return the number of images received so far."""
     *_, is_terminated, is_truncated, _ = env.step(env.action_space.sample())
     if is_terminated or is_truncated:
         env.reset()
@@ -31,17 +31,17 @@ def seen_after_a_step(env, page):
 
 
 @pytest.mark.parametrize("name", ["PointGoal-v0", "TurtleBot3Stage-v0"])
-def test_who_looks_on_sees_the_episode_go_on_in_its_own_time(name, capsys):
+def test_an_open_page_shows_the_episode_in_real_time(name, capsys):
     env = gymnasium.make(f"home_service_gym:{name}", render_mode="human")
     env.reset(seed=0)
     with wait_for_page(env, capsys) as page:
-        wait_until("a first picture", lambda: page.pictures > 0)
+        wait_until("a first image", lambda: page.pictures > 0)
         before = page.pictures
-        # A busy page shows several moments at once.
-        wait_until("pictures of the episode", lambda: seen_after_a_step(env, page) >= before + STEPS // 2)
+        # A busy page may skip states.
+        wait_until("images of the episode", lambda: images_after_a_step(env, page) >= before + STEPS // 2)
         began = time.monotonic()
         for _ in range(STEPS):
-            seen_after_a_step(env, page)
+            images_after_a_step(env, page)
         assert time.monotonic() - began > 0.8 * (STEPS - 1) / env.metadata["render_fps"]
         kinds = {node.strip("/").partition("/")[0] for node in page.nodes}
         assert {"world", "robots", "layers"} <= kinds
@@ -49,7 +49,7 @@ def test_who_looks_on_sees_the_episode_go_on_in_its_own_time(name, capsys):
         page.wait_until_closed()
 
 
-def test_another_world_takes_the_place_of_the_one_before(capsys):
+def test_a_new_world_replaces_the_previous_one(capsys):
     env = gymnasium.make("home_service_gym:PointGoal-v0", scenario="homes", render_mode="human")
     env.reset(seed=0, options={"seed": 1})
     with wait_for_page(env, capsys) as page:
@@ -61,7 +61,7 @@ def test_another_world_takes_the_place_of_the_one_before(capsys):
     env.close()
 
 
-def test_without_the_cockpit_a_sentence_says_what_is_missing(monkeypatch):
+def test_a_missing_cockpit_is_reported(monkeypatch):
     monkeypatch.delitem(sys.modules, "home_service_gym.browser_window", raising=False)
     monkeypatch.setitem(sys.modules, "cockpit.page.server", None)
     env = gymnasium.make("home_service_gym:PointGoal-v0", render_mode="human")

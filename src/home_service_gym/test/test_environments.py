@@ -1,4 +1,4 @@
-"""Every environment keeps Gymnasium's contract and repeats itself; each task ends as it should."""
+"""Every environment satisfies Gymnasium's contract and is deterministic; each task ends as documented."""
 
 import functools
 import math
@@ -37,7 +37,7 @@ each_variant = pytest.mark.parametrize(("name", "given"), VARIANTS, ids=lambda v
 
 
 @each_variant
-def test_it_passes_the_checker_of_gymnasium_without_a_complaint(name, given):
+def test_it_passes_gymnasiums_checker_without_warnings(name, given):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         warnings.filterwarnings("ignore", ".*render_mode.*|.*different to the unwrapped.*")
@@ -60,7 +60,7 @@ def episode(env, seed, steps=60):
 
 
 @each_variant
-def test_the_same_seed_gives_the_same_episode_whatever_was_played_before(name, given):
+def test_an_episode_depends_on_its_seed_only(name, given):
     used, fresh = gymnasium.make(name, **given).unwrapped, gymnasium.make(name, **given).unwrapped
     episode(used, seed=5)
     first, other, again = (episode(used, seed) for seed in (3, 4, 3))
@@ -72,7 +72,7 @@ def test_the_same_seed_gives_the_same_episode_whatever_was_played_before(name, g
 
 
 @pytest.mark.parametrize("name", home_service_gym.NAMES)
-def test_a_picture_shows_the_episode_go_on(name):
+def test_rendered_images_change_during_an_episode(name):
     env = gymnasium.make(name, render_mode="rgb_array")
     env.reset(seed=0)
     first = env.render()
@@ -85,7 +85,7 @@ def test_a_picture_shows_the_episode_go_on(name):
     env.close()
 
 
-def test_what_crosses_is_drawn_as_wide_as_it_is():
+def test_moving_cylinders_are_drawn_to_scale():
     env = DynabarnEnv()
     env.reset(seed=1, options={"seed": 1})
     world, picture = env._simulation.arena.world, TopView(env._simulation)
@@ -95,7 +95,7 @@ def test_what_crosses_is_drawn_as_wide_as_it_is():
     env.close()
 
 
-def test_processes_play_what_one_process_plays():
+def test_several_processes_give_the_results_of_one():
     make = functools.partial(gymnasium.make_vec, "home_service_gym:PointGoal-v0", num_envs=2)
     options = []
     for mode in ("sync", "async"):
@@ -109,7 +109,7 @@ def test_processes_play_what_one_process_plays():
 
 
 def steer(observation):
-    """Turns to what it is told of, then drives there; sees no obstacle."""
+    """Turns towards the observed goal, then drives there; ignores obstacles."""
     distance, cosine, sine = observation["goal"]
     bearing = np.arctan2(sine, cosine)
     ahead = 0.5 * min(max(float(distance), 0.0), 1.0) if abs(bearing) < 0.2 else 0.0
@@ -128,14 +128,14 @@ def run_episode(env, policy, seed, steps=900, options=None):
     return sum(rewards), info.get("outcome", "")
 
 
-def test_a_goal_in_the_same_room_is_reached_and_worth_its_way():
+def test_a_goal_in_the_same_room_is_reached_and_rewarded():
     outcomes = [run_episode(PointGoalEnv(), steer, seed) for seed in range(8)]
     reached = [total for total, outcome in outcomes if outcome == "success"]
     assert reached and min(reached) > 9.0
     assert any(outcome == "collision" and total < 0.0 for total, outcome in outcomes)
 
 
-def test_what_a_beam_has_reached_is_known_and_what_lies_behind_is_not():
+def test_cells_along_a_beam_are_explored_and_those_behind_a_wall_are_not():
     grid = grid_from_picture("..........\n....#.....\n..........\n..........", 0.1)
     angles, ranges = (-0.25, 0.0, 0.25, 1.5), np.array([0.62, 0.62, np.inf, 0.1], dtype=np.float32)
     explored_area, base = ExploredArea(grid), Pose2(0.05, 0.15)
@@ -152,7 +152,7 @@ def test_what_a_beam_has_reached_is_known_and_what_lies_behind_is_not():
             assert explored[row, col]
             if grid.cells[row, col] == OCCUPIED:
                 break
-    assert explored[2, 4] and not explored[2, 5], "a wall, and behind it"
+    assert explored[2, 4] and not explored[2, 5], "a wall, and the cell behind it"
     assert explored[1, 7] and not explored[1, 9], "a cell beyond where the beam ends"
     count = np.count_nonzero(explored & (grid.cells == FREE))
     assert new_cells == pytest.approx(0.01 * count)
@@ -160,17 +160,17 @@ def test_what_a_beam_has_reached_is_known_and_what_lies_behind_is_not():
     assert explored_area.add_scan(base, scan) == 0.0, "nothing is new"
 
 
-def along_the_way(env, goal):
-    """An observation of a point of the way to a goal a little ahead; of the goal itself when it is near."""
+def goal_on_path(env, goal):
+    """A goal observation of a point ahead on the path, or of the goal itself if it is close."""
     traversable_space, pose = env._simulation.traversable_space, env._state.base_in_world
     path_xy = traversable_space.path(traversable_space.distances_to(goal), pose)
     x, y = path_xy[min(5, len(path_xy) - 1)] - (pose.x, pose.y)
     bearing = np.arctan2(y, x) - pose.yaw
-    is_there = pose.distance_to(goal) < 0.15
-    return {"goal": (0.0 if is_there else 0.6, np.cos(bearing), np.sin(bearing))}
+    is_close = pose.distance_to(goal) < 0.15
+    return {"goal": (0.0 if is_close else 0.6, np.cos(bearing), np.sin(bearing))}
 
 
-def test_the_errand_waits_at_the_pickup_zone_and_ends_at_the_drop_off_zone():
+def test_the_errand_waits_in_the_pickup_zone_and_ends_in_the_drop_off_zone():
     env = HomeServiceEnv()
     observation, _ = env.reset(seed=0)
     assert observation["carrying"] == [0]
@@ -178,7 +178,7 @@ def test_the_errand_waits_at_the_pickup_zone_and_ends_at_the_drop_off_zone():
     carrying, stood, outcome = 0, 0, ""
     for _ in range(1200):
         goal = onwards[0] if carrying else pickup
-        observation, reward, terminated, _, info = env.step(steer(along_the_way(env, goal)))
+        observation, reward, terminated, _, info = env.step(steer(goal_on_path(env, goal)))
         base = env._state.base_in_world
         stood += base.distance_to(pickup) < 0.16
         if carrying and len(onwards) > 1 and base.distance_to(goal) < 0.2:
@@ -194,15 +194,18 @@ def test_the_errand_waits_at_the_pickup_zone_and_ends_at_the_drop_off_zone():
     env.close()
 
 
-def test_a_leader_who_is_left_alone_is_lost_and_one_who_is_followed_is_not():
+def test_a_leader_is_lost_unless_the_robot_follows():
     assert run_episode(FollowEnv(), lambda _: np.zeros(2, np.float32), 1)[1] == "lost"
     total, outcome = run_episode(
-        FollowEnv(), lambda seen: steer({"goal": seen["leader"] - (0.9, 0.0, 0.0)}), 2, steps=150
+        FollowEnv(),
+        lambda observation: steer({"goal": observation["leader"] - (0.9, 0.0, 0.0)}),
+        2,
+        steps=150,
     )
     assert outcome == "" and total > 2.0
 
 
-def test_a_leader_walks_on_from_a_place_that_is_one_step_from_the_last():
+def test_a_leader_continues_from_a_waypoint_one_cell_away():
     class Neighbours:
         waypoints = (0, 1)
 
@@ -213,7 +216,7 @@ def test_a_leader_walks_on_from_a_place_that_is_one_step_from_the_last():
     assert len(path_xy) > 20 and (np.hypot(*np.diff(path_xy, axis=0).T) == 1.0).all()
 
 
-def test_a_robot_that_spins_out_of_control_is_told_as_fast_as_is_declared():
+def test_the_observed_velocity_of_a_spinning_robot_stays_within_its_space():
     env = DynabarnEnv()
     env.reset(seed=1003)
     env.action_space.seed(1003)
@@ -230,7 +233,7 @@ def test_a_robot_that_spins_out_of_control_is_told_as_fast_as_is_declared():
     env.close()
 
 
-def test_turning_round_shows_more_of_a_home_only_once():
+def test_a_second_turn_in_place_explores_nothing_new():
     env = ExploreEnv()
     observation, _ = env.reset(seed=2)
     assert 0.0 < (observation["map"] > 0).mean() < 0.6
@@ -239,7 +242,7 @@ def test_turning_round_shows_more_of_a_home_only_once():
     env.close()
 
 
-def test_moving_cylinders_come_nearer_without_the_robot_moving():
+def test_moving_cylinders_change_the_scan_of_a_standing_robot():
     env = DynabarnEnv()
     first = env.reset(seed=3)[0]["scan"]
     for _ in range(30):
@@ -248,24 +251,24 @@ def test_moving_cylinders_come_nearer_without_the_robot_moving():
     env.close()
 
 
-def test_straight_ahead_through_a_field_is_a_collision():
+def test_driving_straight_through_a_field_is_a_collision():
     total, outcome = run_episode(
         BarnEnv(), lambda _: np.array([0.5, 0.0], np.float32), 0, options={"seed": 2}
     )
     assert outcome == "collision" and total < 0.0
 
 
-def test_the_first_goal_of_a_stage_is_reached_straight_ahead_and_another_follows():
+def test_a_reached_goal_of_a_stage_is_replaced_by_another():
     env = TurtleBot3StageEnv(1)
-    seen, _ = env.reset(seed=0)
-    assert seen.shape == (26,) and seen[25] == pytest.approx(0.6, abs=0.05)
+    observation, _ = env.reset(seed=0)
+    assert observation.shape == (26,) and observation[25] == pytest.approx(0.6, abs=0.05)
     rewards = [env.step(2)[1] for _ in range(20)]
     assert 200.0 in rewards
     assert env.unwrapped._goal.x != 0.6
     env.close()
 
 
-def test_what_walks_in_stage_four_goes_as_far_as_its_keyframes():
+def test_walkers_of_stage_four_follow_their_keyframes():
     trajectories = {
         trajectory.link: trajectory
         for trajectory in TurtleBot3StageEnv(4)._simulation.arena.world.trajectories
@@ -291,6 +294,6 @@ def test_what_walks_in_stage_four_goes_as_far_as_its_keyframes():
         (lambda: DynabarnEnv(folder="/nonexistent"), "no files dynabarn_N.yaml"),
     ],
 )
-def test_what_cannot_be_played_is_told(make, complaint):
+def test_invalid_arguments_are_reported(make, complaint):
     with pytest.raises(SettingsError, match=complaint.replace(".", r"\.")):
         make()

@@ -1,4 +1,4 @@
-"""What a robot is told of who and what is around it."""
+"""Observations of the nearest pedestrians and of the map around the robot."""
 
 import math
 
@@ -12,18 +12,18 @@ from home_service_gym.people_and_map import NOBODY, nearest_people
 from planar import Pose2, SettingsError, grid_from_picture
 
 
-def test_the_nearest_people_come_first_and_are_seen_from_the_robot():
+def test_the_nearest_people_come_first_and_are_in_the_robots_frame():
     people = np.array([[1.0, 5.0, 0.0, 0.0, 0.2], [1.0, 3.0, 0.5, 0.0, 0.2]])
-    seen = nearest_people(people, Pose2(1.0, 1.0, math.pi / 2.0), 3)
-    assert seen == pytest.approx(np.array([[2.0, 0.0, 0.0, -0.5], [4.0, 0.0, 0.0, 0.0], NOBODY]), abs=1e-6)
+    rows = nearest_people(people, Pose2(1.0, 1.0, math.pi / 2.0), 3)
+    assert rows == pytest.approx(np.array([[2.0, 0.0, 0.0, -0.5], [4.0, 0.0, 0.0, 0.0], NOBODY]), abs=1e-6)
 
 
-def test_of_a_crowd_only_so_many_are_told():
+def test_only_the_requested_number_of_people_is_observed():
     crowd = np.column_stack([np.arange(9.0), np.zeros((9, 4))])
     assert nearest_people(crowd, Pose2(8.0, 0.0, math.pi), 2)[:, 0] == pytest.approx([0.0, 1.0])
 
 
-def test_the_map_around_is_turned_with_the_robot():
+def test_the_egocentric_map_turns_with_the_robot():
     grid = grid_from_picture("#....\n.....\n.....")
     corner = grid.points_of(np.array([[2, 0]]))[0]
     for yaw in (0.0, math.pi / 2.0):
@@ -34,7 +34,7 @@ def test_the_map_around_is_turned_with_the_robot():
     assert {UNKNOWN, FREE_SHADE, OCCUPIED_SHADE} == set(np.unique(picture).tolist())
 
 
-def test_people_are_told_as_they_walk_and_others_for_each_seed():
+def test_people_walk_and_differ_between_seeds():
     env = gymnasium.make("home_service_gym:PointGoal-v0", scenario="home_people", people=4)
     first, _ = env.reset(seed=1, options={"seed": 1})
     other, _ = env.reset(seed=1, options={"seed": 2})
@@ -49,7 +49,7 @@ def test_people_are_told_as_they_walk_and_others_for_each_seed():
     env.close()
 
 
-def test_no_episode_begins_where_somebody_stands():
+def test_no_episode_starts_close_to_a_pedestrian():
     env = gymnasium.make("home_service_gym:PointGoal-v0", scenario="home_people", people=1).unwrapped
     nearest = []
     for seed in range(60):
@@ -60,7 +60,7 @@ def test_no_episode_begins_where_somebody_stands():
     env.close()
 
 
-def test_what_moves_is_known_by_where_it_begins():
+def test_moving_bodies_are_found_at_their_start_positions():
     fields = gymnasium.make("home_service_gym:DynaBARN-v0").unwrapped
     fields.reset(seed=1, options={"seed": 1})
     world = fields._simulation.arena.world
@@ -71,8 +71,8 @@ def test_what_moves_is_known_by_where_it_begins():
     fields.close()
 
 
-def test_what_cannot_be_told_is_refused():
+def test_invalid_observation_options_are_refused():
     with pytest.raises(SettingsError, match="people must not be negative"):
         gymnasium.make("home_service_gym:PointGoal-v0", people=-1)
-    with pytest.raises(SettingsError, match="has_map: this task tells of a map of its own"):
+    with pytest.raises(SettingsError, match="has_map: this task already observes a map"):
         gymnasium.make("home_service_gym:Explore-v0", has_map=True)

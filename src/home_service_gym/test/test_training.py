@@ -1,4 +1,4 @@
-"""Evolution repeats itself from a seed, tells of each generation, and changes the weights."""
+"""The evolution strategy is deterministic and changes the weights."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from planar import Scan
 from plugin_examples.learned import LOOKAHEAD, SECTORS, VIEW_RANGE, Policy
 
 
-def test_the_sectors_tell_how_far_it_is_all_around():
+def test_sectors_hold_the_distance_to_the_nearest_scan_point():
     ranges = np.full(360, np.inf)
     ranges[180] = 0.7  # straight ahead
     clear = sector_ranges(Scan(0.0, -np.pi, 2.0 * np.pi / 360, ranges, 0.1, 8.0))
@@ -18,15 +18,15 @@ def test_the_sectors_tell_how_far_it_is_all_around():
     assert np.delete(clear, SECTORS // 2) == pytest.approx(VIEW_RANGE)
 
 
-def test_without_its_network_it_follows_the_way_to_some_goals(monkeypatch):
-    monkeypatch.setattr(training, "HOMES", (0,))
+def test_zero_weights_follow_the_path_to_some_goals(monkeypatch):
+    monkeypatch.setattr(training, "HOME_SEEDS", (0,))
     env = PointGoalEnv("home_errand", lookahead=LOOKAHEAD)
     outcomes = [run_episode(env, Policy(np.zeros(Policy.WEIGHT_COUNT)), seed)[1] for seed in range(6)]
     env.close()
     assert outcomes.count("success") >= 2, outcomes
 
 
-def test_a_seed_decides_what_evolves():
+def test_training_depends_on_the_seed():
     runs = [list(evolve(generations=2, pairs=1, episodes=1, workers=1, seed=3)) for _ in range(2)]
     weights = [[generation[-1] for generation in run] for run in runs]
     assert [generation[0] for generation in runs[0]] == [0, 1]

@@ -1,4 +1,4 @@
-"""What evaluate.sh and its like install when first used is not there everywhere."""
+"""Skips tests whose packages are installed only on the first use of evaluate.sh and the like."""
 
 from importlib.util import find_spec
 

@@ -25,12 +25,12 @@ def folder(tmp_path):
     return tmp_path
 
 
-def test_seeds_take_the_worlds_by_turns(folder):
+def test_seeds_use_the_worlds_in_turn(folder):
     source = BarnFolder(folder / "worlds")
     assert [source.arena(seed).title for seed in range(3)] == ["BARN 7", "BARN 30", "BARN 7"]
 
 
-def test_a_scenario_of_barn_can_be_played(folder):
+def test_a_barn_scenario_can_be_loaded(folder):
     scenarios, complaints = load_suites([str(folder / "barn.yaml")])
     assert complaints == [] and scenarios[0].task.files() == ()
 
@@ -54,7 +54,7 @@ def test_a_broken_reference_path_is_named(folder, content):
         BarnFolder(folder / "worlds").arena(0)
 
 
-def test_files_without_a_number_are_none_of_its_worlds(folder):
+def test_files_without_a_number_are_ignored(folder):
     (folder / "worlds/world_x.world").write_text(WORLD)
     assert len(BarnFolder(folder / "worlds").pairs()) == 2
 

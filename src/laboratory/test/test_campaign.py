@@ -1,4 +1,4 @@
-"""Missions over processes: nothing is lost, nothing is played twice, a dead worker costs only its mission."""
+"""Campaigns: no result is lost, no run is repeated, and a dead worker costs only its current run."""
 
 import os
 import signal
@@ -25,18 +25,18 @@ SEEDS = tuple(range(6))
 
 @pytest.fixture(scope="module")
 def scenario():
-    """One that takes a second or so."""
+    """A scenario whose runs take about a second."""
     return replace(read_scenario(FOLDER / "home_errand.yaml"), seconds=3.0)
 
 
 @pytest.fixture(scope="module")
 def alone(scenario):
-    """What comes of it in this process."""
+    """Its results in this process."""
     return [same(run_scenario(scenario, seed)) for seed in SEEDS]
 
 
 def same(result):
-    """Without what depends on the machine."""
+    """A result without its wall-clock time."""
     return replace(result, wall_seconds=0.0)
 
 
@@ -44,7 +44,7 @@ def results_of(evaluation):
     return [same(result) for each in evaluation.evaluated() for result in each.results]
 
 
-def test_workers_make_what_one_process_makes_also_if_one_of_them_is_killed(scenario, alone, tmp_path):
+def test_workers_give_the_results_of_one_process_even_if_one_is_killed(scenario, alone, tmp_path):
     evaluation = Evaluation([scenario], SEEDS, tmp_path / "results.sqlite")
     runs, total = evaluation.pending_runs()
     assert total == len(runs) == len(SEEDS)
@@ -64,7 +64,7 @@ def test_workers_make_what_one_process_makes_also_if_one_of_them_is_killed(scena
     evaluation.close()
 
 
-def test_what_has_been_played_is_not_played_again(scenario, alone, tmp_path):
+def test_stored_runs_are_not_repeated(scenario, alone, tmp_path):
     path = tmp_path / "results.sqlite"
     store = ResultStore(path)
     for result in alone[:4]:
@@ -79,7 +79,7 @@ def test_what_has_been_played_is_not_played_again(scenario, alone, tmp_path):
     evaluation.close()
 
 
-def test_an_error_is_worth_another_try_and_other_software_plays_anew(alone, tmp_path):
+def test_runs_with_an_error_or_of_another_version_are_repeated(alone, tmp_path):
     store = ResultStore(tmp_path / "results.sqlite")
     store.add(alone[0])
     store.add(replace(alone[1], outcome="error"))
@@ -90,14 +90,14 @@ def test_an_error_is_worth_another_try_and_other_software_plays_anew(alone, tmp_
     store.close()
 
 
-def test_a_file_that_holds_no_results_is_named(tmp_path):
+def test_an_unreadable_results_file_is_named(tmp_path):
     path = tmp_path / "results.sqlite"
     path.write_text("nothing of this kind " * 100)
     with pytest.raises(ResultsError, match=f"{path}: file is not a database"):
         ResultStore(path)
 
 
-def test_a_scheduler_that_is_not_there_is_told(monkeypatch):
+def test_a_missing_scheduler_is_reported(monkeypatch):
     monkeypatch.setattr("laboratory.campaign.workers.CONNECT_TIMEOUT", 1)
     with pytest.raises(WorkersError, match="tcp://127.0.0.1:9: no scheduler"), Workers(
         scheduler="tcp://127.0.0.1:9"
@@ -105,28 +105,26 @@ def test_a_scheduler_that_is_not_there_is_told(monkeypatch):
         pass
 
 
-def test_a_worker_of_another_version_refuses(scenario):
+def test_a_worker_of_another_version_refuses_to_run(scenario):
     with pytest.raises(WorkersError, match="another version of the software"):
         campaign.run_on_worker(scenario, RunKey("digest", 1, "of tomorrow"))
 
 
-def test_a_mission_has_a_key_of_scenario_seed_and_version(scenario):
+def test_a_run_is_identified_by_scenario_seed_and_version(scenario):
     assert ScenarioRun(scenario, 3, "abc").key[:2] == ("abc", 3)
 
 
-def test_a_campaign_that_never_began_tells_nothing_but_why(monkeypatch, tmp_path, capsys):
+def test_a_campaign_that_cannot_start_prints_only_the_error(monkeypatch, tmp_path, capsys):
     monkeypatch.setattr("supervision.interruption.raise_when_interrupted", lambda: None)
     monkeypatch.setattr("laboratory.campaign.workers.CONNECT_TIMEOUT", 1)
-    words = ["evaluate", "home_errand", "--output", str(tmp_path), "--scheduler", "tcp://127.0.0.1:9"]
+    arguments = ["evaluate", "home_errand", "--output", str(tmp_path), "--scheduler", "tcp://127.0.0.1:9"]
     with pytest.raises(WorkersError, match="no scheduler"):
-        parse(words, commands.FOLDER).run()
+        parse(arguments, commands.FOLDER).run()
     assert "0 runs" not in capsys.readouterr().out
     assert [file.name for file in tmp_path.iterdir()] == ["results.sqlite"]
 
 
-def test_a_full_disk_is_told_of_the_file_that_it_kept_from_being_written_first(
-    monkeypatch, tmp_path, scenario, alone
-):
+def test_the_first_error_of_a_full_disk_is_reported(monkeypatch, tmp_path, scenario, alone):
     def fill_up(evaluation, workers):
         raise ResultsError("results.sqlite: database or disk is full")
 
@@ -141,7 +139,7 @@ def test_a_full_disk_is_told_of_the_file_that_it_kept_from_being_written_first(
         parse(["evaluate", "home_errand", "--output", str(tmp_path)], commands.FOLDER).run()
 
 
-def test_progress_tells_how_long_it_will_take():
+def test_progress_includes_the_remaining_time():
     progress = CampaignProgress(10, clock=iter([0.0, 3.0, 6.0]).__next__)
     progress.count(True)
     progress.count(False)

@@ -1,4 +1,4 @@
-"""Doors in scenarios: which are shut, that another way is left, and that the robot takes it."""
+"""Doors of scenarios: which ones close, that an alternative path remains, and that the robot takes it."""
 
 import math
 from dataclasses import replace
@@ -27,14 +27,14 @@ def written(tmp_path, doors):
     return path
 
 
-def shut_for_good(arena):
-    """The map of a world whose doors are walls."""
+def map_with_closed_doors(arena):
+    """The true map of a world with its doors as walls."""
     doors = arena.world.doors
     walls = [box_on_floor(f"wall_for_{door.name}", (0.06, door.width, 1.0), door.pose) for door in doors]
     return true_map(replace(arena.world, bodies=(*arena.world.bodies, *walls)))
 
 
-def test_the_robot_whose_door_is_shut_goes_the_other_way():
+def test_the_robot_takes_the_alternative_path_if_a_door_is_closed():
     scenario = read_scenario(SCENARIO)
     shut, usual = run_scenario(scenario, 3), run_scenario(replace(scenario, doors=0), 3)
     assert shut.is_success, shut.reason
@@ -42,16 +42,15 @@ def test_the_robot_whose_door_is_shut_goes_the_other_way():
     assert replace(run_scenario(scenario, 3), wall_seconds=0.0) == replace(shut, wall_seconds=0.0)
 
 
-def test_the_door_of_the_suite_shuts_the_nearest_way_and_another_is_open():
+def test_the_door_of_the_suite_closes_the_shortest_path_but_not_all():
     arena = read_scenario(SCENARIO).arena(0)
-    way = (Pose2(), Pose2(2.0, 3.0))
-    nearest, other = (
-        ShortestPaths(grid, PASSAGE_CLEARANCE).length(way) for grid in (arena.grid, shut_for_good(arena))
-    )
+    ends = (Pose2(), Pose2(2.0, 3.0))
+    grids = (arena.grid, map_with_closed_doors(arena))
+    nearest, other = (ShortestPaths(grid, PASSAGE_CLEARANCE).length(ends) for grid in grids)
     assert nearest is not None and other is not None and other > 2.0 * nearest
 
 
-def test_doors_of_a_generated_office_leave_a_way_to_every_place():
+def test_closed_doors_of_a_generated_office_leave_every_place_reachable():
     scenario = read_scenario(OFFICES)
     shut = 0
     for seed in range(6):
@@ -59,13 +58,13 @@ def test_doors_of_a_generated_office_leave_a_way_to_every_place():
         doors, places = arena.world.doors, [Pose2(), *scenario.task.required_poses(arena)]
         shut += len(doors)
         assert len(doors) <= 4 and len({door.name for door in doors}) == len(doors)
-        assert ShortestPaths(shut_for_good(arena), 0.3).length(places) is not None
+        assert ShortestPaths(map_with_closed_doors(arena), 0.3).length(places) is not None
         again = replace(scenario, name="again").arena(seed)
         assert again.world.doors == doors
     assert shut > 12
 
 
-def test_doorways_are_where_walls_leave_them():
+def test_doorways_are_gaps_in_walls():
     arena = Offices(120.0, 160.0).arena(2)
     for door in arena.doorways:
         side = np.array((-math.sin(door.pose.yaw), math.cos(door.pose.yaw))) * (door.width / 2.0 + 0.1)
@@ -74,10 +73,10 @@ def test_doorways_are_where_walls_leave_them():
         assert values[0] == 0 and values[1] == 100
 
 
-def test_doors_of_a_world_of_which_none_are_known_are_an_error(tmp_path):
+def test_closing_doors_of_a_world_without_doorways_is_an_error(tmp_path):
     result = run_scenario(read_scenario(written(tmp_path, "2")), 0)
     assert result.outcome == "error"
-    assert result.reason == "home: doors need a generated building, or places of their own"
+    assert result.reason == "home: doors need a generated building or a list of poses"
 
 
 @pytest.mark.parametrize(
@@ -92,7 +91,7 @@ def test_doors_of_a_world_of_which_none_are_known_are_an_error(tmp_path):
         ("[{x: 1, y: 2, width: 1, start: -5}]", ":5: happens.doors[1].start must be not negative"),
     ],
 )
-def test_a_mistake_is_told_with_line_and_key(tmp_path, doors, complaint):
+def test_an_error_names_line_and_key(tmp_path, doors, complaint):
     with pytest.raises(SettingsError) as caught:
         read_scenario(written(tmp_path, doors))
     assert complaint in str(caught.value)

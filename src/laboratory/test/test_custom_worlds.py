@@ -1,4 +1,4 @@
-"""Generators of worlds of other people: known by name, told what a scenario says, blamed for what they do."""
+"""Custom world generators: found by name, configured by the scenario, and named in their errors."""
 
 import sys
 from dataclasses import dataclass, replace
@@ -16,7 +16,7 @@ from sim_bridge.world import World
 
 SCENARIO = """\
 world:
-  own.worlds/NAME: VALUES
+  custom.world/NAME: VALUES
 task: {reach: {x: 3.0, y: 0.0, radius: 0.5}}
 """
 
@@ -35,18 +35,18 @@ class Corridor:
 
 
 @dataclass(frozen=True)
-class Needs(Corridor):
+class WithoutDefaults(Corridor):
     width: float
     walls: int
 
 
-class Loose:
+class NotFrozen:
     def arena(self, seed):
         return None
 
 
 @dataclass(frozen=True)
-class Placeless:
+class WithoutArena:
     def place(self, seed):
         return None
 
@@ -58,15 +58,15 @@ class Raises:
 
 
 @dataclass(frozen=True)
-class Empty:
+class ReturnsNone:
     def arena(self, seed):
         return None
 
 
 @pytest.fixture
 def read(monkeypatch, tmp_path):
-    """Reads a scenario in the world of one of these, with values."""
-    monkeypatch.setitem(sys.modules, "own.worlds", sys.modules[__name__])
+    """Reads a scenario with one of these generators and values for its fields."""
+    monkeypatch.setitem(sys.modules, "custom.world", sys.modules[__name__])
 
     def reading(kind, values="{}"):
         name = kind if isinstance(kind, str) else kind.__name__
@@ -77,7 +77,7 @@ def read(monkeypatch, tmp_path):
     return reading
 
 
-def test_a_scenario_is_played_in_the_world_of_a_generator_by_name(read):
+def test_a_scenario_names_a_generator_and_sets_its_fields(read):
     scenario = read(Corridor, "{width: 3.0}")
     arena = scenario.arena(7)
     assert arena.title == "corridor 7"
@@ -86,7 +86,7 @@ def test_a_scenario_is_played_in_the_world_of_a_generator_by_name(read):
     assert scenario.world.arena_number(7) == 7
 
 
-def test_what_a_scenario_says_of_it_and_its_source_tell_results_apart(read):
+def test_its_fields_and_its_source_are_part_of_the_digest(read):
     assert read(Corridor).digest() == read(Corridor, "{walls: 2}").digest()
     assert read(Corridor).digest() != read(Corridor, "{width: 3.0}").digest()
     assert [path.name for path in read(Corridor).world.files()] == ["test_custom_worlds.py"]
@@ -95,38 +95,45 @@ def test_what_a_scenario_says_of_it_and_its_source_tell_results_apart(read):
 @pytest.mark.parametrize(
     ("kind", "values", "complaint"),
     [
-        (Corridor, "{width: wide}", ":2: world.own.worlds/Corridor.width must be a number, got 'wide'"),
-        (Corridor, "{wdith: 3.0}", ":2: world.own.worlds/Corridor.wdith is not known; did you mean width?"),
-        (Loose, "{}", "is no generator of worlds: it is no frozen dataclass"),
-        (Placeless, "{}", "is no generator of worlds: it has no arena(seed)"),
+        (Corridor, "{width: wide}", ":2: world.custom.world/Corridor.width must be a number, got 'wide'"),
+        (
+            Corridor,
+            "{wdith: 3.0}",
+            ":2: world.custom.world/Corridor.wdith is not known; did you mean width?",
+        ),
+        (NotFrozen, "{}", "is not a world generator: it is not a frozen dataclass"),
+        (WithoutArena, "{}", "is no world generator: it has no arena(seed)"),
         (
             "Nowhere",
             "{}",
-            ":2: world.own.worlds/Nowhere cannot be used: own.worlds/Nowhere: there is no Nowhere",
+            ":2: world.custom.world/Nowhere cannot be used: custom.world/Nowhere: there is no Nowhere",
         ),
     ],
 )
-def test_what_cannot_be_used_is_told_with_file_and_line(read, kind, values, complaint):
+def test_an_unusable_generator_is_reported_with_file_and_line(read, kind, values, complaint):
     with pytest.raises(SettingsError) as refused:
         read(kind, values)
     assert "scenario.yaml:2" in str(refused.value) and complaint in str(refused.value)
 
 
 @pytest.mark.parametrize(
-    ("kind", "said"),
-    [(Raises, "raised ZeroDivisionError: division by zero"), (Empty, "gave a NoneType, not an Arena")],
+    ("kind", "message"),
+    [
+        (Raises, "raised ZeroDivisionError: division by zero"),
+        (ReturnsNone, "returned a NoneType, expected an Arena"),
+    ],
 )
-def test_what_goes_wrong_in_it_is_told_in_its_name(read, kind, said):
-    with pytest.raises(WorldError, match=f"^own.worlds/{kind.__name__} {said}"):
+def test_its_errors_name_it(read, kind, message):
+    with pytest.raises(WorldError, match=f"^custom.world/{kind.__name__} {message}"):
         read(kind).arena(0)
 
 
-def test_results_of_a_planner_or_a_fault_that_has_changed_are_others(tmp_path, monkeypatch):
+def test_changed_code_of_a_planner_or_fault_changes_the_digest(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(str(tmp_path))
     (tmp_path / "changing").mkdir()
     source = tmp_path / "changing/code.py"
     scenario = read_scenario(FOLDER / "home_errand.yaml")
-    told = {}
+    digests = {}
     for text in ("one = 1\n", "one = 2\n"):
         source.write_text(text)
         played = (
@@ -134,11 +141,11 @@ def test_results_of_a_planner_or_a_fault_that_has_changed_are_others(tmp_path, m
             replace(scenario, faults=(Fault("changing.code/Mine"),)),
             scenario,
         )
-        told[text] = [each.digest() for each in played]
-    before, after = told.values()
+        digests[text] = [each.digest() for each in played]
+    before, after = digests.values()
     assert [was == now for was, now in zip(before, after)] == [False, False, True]
 
 
 @pytest.mark.parametrize("planner", ["no_such.module/Mine", "../Mine", "no_such_either"])
-def test_a_planner_that_is_not_there_is_no_matter_of_the_digest(planner):
+def test_a_missing_planner_does_not_break_the_digest(planner):
     assert read_scenario(FOLDER / "home_errand.yaml").with_planner(planner).digest()

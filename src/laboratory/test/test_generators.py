@@ -25,7 +25,7 @@ SMALL = {"homes": Homes(30.0, 80.0), "offices": Offices(60.0, 160.0), "halls": H
 
 @pytest.fixture(scope="module", params=SMALL)
 def buildings(request):
-    """Some of a kind, and their arenas."""
+    """A world source and some of its arenas."""
     source = SMALL[request.param]
     return source, [source.arena(seed) for seed in SEEDS]
 
@@ -34,8 +34,8 @@ def clearance_of(arena):
     return distance_field(arena.grid.cells != FREE, arena.grid.resolution)
 
 
-def share_within_reach(arena):
-    """Of where the robot has room, that it can come to from where it starts."""
+def reachable_share(arena):
+    """Share of the traversable space that is reachable from the start."""
     regions, _ = label(clearance_of(arena) > PASSAGE_CLEARANCE)
     return (regions == regions[cell_at(arena, 0.0, 0.0)]).sum() / (regions > 0).sum()
 
@@ -46,14 +46,14 @@ def cell_at(arena, x, y):
 
 
 @pytest.mark.parametrize("seed", [8, 41])
-def test_no_furniture_stands_where_the_robot_starts(seed):
-    """Homes whose map had the robot shut in by what the coarser raster took for far enough."""
+def test_the_start_is_free_of_furniture(seed):
+    """Regression: in these homes the robot was enclosed, because the raster overestimates distances."""
     arena = Homes().arena(seed)
     assert clearance_of(arena)[cell_at(arena, 0.0, 0.0)] > STANDING_CLEARANCE
     assert len(arena.places) >= 2
 
 
-def test_the_same_seed_makes_the_same_building_and_another_another(buildings):
+def test_a_building_depends_on_the_seed_only(buildings):
     source, arenas = buildings
     for seed, arena in zip(SEEDS, arenas):
         again = _arena.__wrapped__(source, seed)
@@ -62,7 +62,7 @@ def test_the_same_seed_makes_the_same_building_and_another_another(buildings):
     assert len({arena.title for arena in arenas}) > 1
 
 
-def test_a_building_is_as_large_as_asked_for(buildings):
+def test_a_building_has_the_requested_area(buildings):
     source, arenas = buildings
     for arena in arenas:
         xy = np.array([body.pose_in_world[:2, 3] for body in arena.world.bodies if "wall_" in body.name])
@@ -71,7 +71,7 @@ def test_a_building_is_as_large_as_asked_for(buildings):
         assert f"{source.kind} of {width * depth:.0f} m2" == arena.title
 
 
-def test_every_place_can_be_reached_from_where_the_robot_starts(buildings):
+def test_every_place_is_reachable_from_the_start(buildings):
     for arena in buildings[1]:
         regions, _ = label(clearance_of(arena) > PASSAGE_CLEARANCE)
         places = [(0.0, 0.0)] + [(place.pose.x, place.pose.y) for place in arena.places]
@@ -80,17 +80,17 @@ def test_every_place_can_be_reached_from_where_the_robot_starts(buildings):
 
 
 @pytest.mark.parametrize("seed", [31, 36, 40])
-def test_no_furniture_cuts_off_rooms(seed):
-    """Homes whose furniture had left the robot a half of what there is, or less."""
-    assert share_within_reach(Homes().arena(seed)) > 0.98
+def test_furniture_does_not_cut_off_rooms(seed):
+    """Regression: in these homes furniture cut off half of the space or more."""
+    assert reachable_share(Homes().arena(seed)) > 0.98
 
 
-def test_nearly_all_of_a_building_can_be_reached(buildings):
+def test_nearly_all_of_a_building_is_reachable(buildings):
     for arena in buildings[1]:
-        assert share_within_reach(arena) > 0.98, arena.world.name
+        assert reachable_share(arena) > 0.98, arena.world.name
 
 
-def test_places_are_apart_and_enough_for_chores(buildings):
+def test_a_building_has_at_least_two_separate_places(buildings):
     for arena in buildings[1]:
         assert len(arena.places) >= 2
         for number, place in enumerate(arena.places):
@@ -108,7 +108,7 @@ def test_an_office_has_a_door_from_its_corridor_to_each_room_and_some_between_ro
     assert sum(between_rooms) > 12
 
 
-def test_halls_have_shelves_or_pillars_with_room_between_them():
+def test_halls_have_shelves_or_pillars_with_aisles_between_them():
     kinds = set()
     for seed in range(12):
         layout = Halls().layout(300.0, np.random.default_rng(seed))
@@ -125,14 +125,14 @@ def test_halls_have_shelves_or_pillars_with_room_between_them():
 
 
 @pytest.mark.parametrize("suite", ["offices", "halls"])
-def test_a_generated_building_can_be_played_in(suite):
+def test_deliveries_succeed_in_a_generated_building(suite):
     scenario = replace(read_scenario(FOLDER / f"{suite}.yaml"), world=SMALL[suite])
     result = run_scenario(scenario, 1)
     assert result.is_success, result.reason
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_rooms_fill_the_outline_and_every_one_is_connected_by_doors(seed):
+def test_rooms_fill_the_outline_and_are_connected_by_doors(seed):
     outline = Rectangle(0.0, 0.0, 16.0, 12.0)
     rooms, walls, doorways = generate_floor_plan(outline, np.random.default_rng(seed))
     assert len(doorways) == len(rooms) - 1
@@ -150,7 +150,7 @@ def test_rooms_fill_the_outline_and_every_one_is_connected_by_doors(seed):
 @pytest.mark.parametrize(
     ("kind", "areas"), [("homes", "30, 300"), ("offices", "60, 400"), ("halls", "80, 800")]
 )
-def test_an_area_that_none_has_is_refused(kind, areas, tmp_path):
+def test_an_unsupported_area_is_refused(kind, areas, tmp_path):
     path = tmp_path / "scenario.yaml"
     text = (FOLDER / f"{kind}.yaml").read_text()
     path.write_text(text.replace(f"[{areas}]", "[10, 20]"))

@@ -30,36 +30,36 @@ def page():
     return page_html([evaluated(SCENARIO, [WON, LOST]), evaluated(dwa, [WON, error])], "v1.2")
 
 
-def test_a_failing_seed_has_its_reason_its_picture_and_the_command_that_repeats_it(page):
+def test_a_failed_seed_has_its_reason_its_map_and_the_command_that_repeats_it(page):
     assert "hit &lt;a wall&gt;" in page and "<a wall>" not in page
     assert "./scripts/play.sh home_errand --seed 1" in page
     assert "home_errand, seed 1: collision after 20.0 s, 9.0 m" in page
     assert 'class="path truth"' in page
 
 
-def test_a_run_that_could_not_be_played_is_told_without_a_picture(page):
+def test_a_run_that_could_not_be_executed_has_no_map(page):
     assert "the world does not load" in page
     assert "--seed 2 --planner dwa_local_planner/DWAPlannerROS" in page
 
 
-def test_the_page_asks_nobody_for_anything(page):
+def test_the_page_loads_nothing_from_the_network(page):
     assert "default-src 'none'" in page
     assert "http://" not in page and "https://" not in page
 
 
 def test_planners_are_on_a_leaderboard(page):
-    assert "the robot&#x27;s own" in page and "dwa_local_planner/DWAPlannerROS" in page
-    assert "success: cannot tell" in page
+    assert "default of the robot" in page and "dwa_local_planner/DWAPlannerROS" in page
+    assert "success: undecided" in page
 
 
-def test_a_planner_alone_is_compared_to_none(page):
+def test_a_single_planner_has_no_comparison(page):
     alone = page_html([evaluated(SCENARIO, [WON])], "v1.2")
-    assert "beside the first" in page and "beside the first" not in alone
+    assert "compared with the first" in page and "compared with the first" not in alone
 
 
-def test_a_figure_that_no_planner_has_is_no_column(page):
-    wayless = page_html([evaluated(SCENARIO, [replace(WON, way=None)])], "v1.2")
-    assert "<th>SPL</th>" in page and "<th>SPL</th>" not in wayless
+def test_a_figure_without_values_has_no_column(page):
+    without_spl = page_html([evaluated(SCENARIO, [replace(WON, way=None)])], "v1.2")
+    assert "<th>SPL</th>" in page and "<th>SPL</th>" not in without_spl
 
 
 def test_a_heat_map_is_reddest_where_most_failed():
@@ -69,17 +69,17 @@ def test_a_heat_map_is_reddest_where_most_failed():
     assert 'fill-opacity="0.90"' in drawn and 'fill-opacity="0.57"' in drawn
 
 
-def test_the_command_names_a_file_that_is_not_of_the_project(tmp_path):
+def test_the_command_names_a_file_outside_of_the_project(tmp_path):
     elsewhere = replace(SCENARIO, file=tmp_path / "my scenario.yaml")
     assert repeat_command(elsewhere, 5) == f"./scripts/play.sh '{tmp_path}/my scenario.yaml' --seed 5"
 
 
-def test_a_run_of_the_graph_is_repeated_by_the_graph():
+def test_the_command_of_a_run_over_ros_has_its_options():
     official = replace(SCENARIO.with_planner("official"), is_over_ros=True)
     command = "./scripts/play.sh home_errand --seed 5 --planner official --over ros"
     assert repeat_command(official, 5) == command
 
 
-def test_a_comparison_is_put_into_words():
+def test_a_comparison_is_described_in_one_line():
     assert comparison_text(compare([WON], [replace(WON, seed=7)])) == "no seeds in common"
-    assert comparison_text(compare([WON], [WON])) == "success: cannot tell (+0 −0, p 1)"
+    assert comparison_text(compare([WON], [WON])) == "success: undecided (+0 −0, p 1)"

@@ -1,4 +1,4 @@
-"""Worlds of cylinders, standing and moving, of seeds and of DynaBARN's files."""
+"""Worlds of static and moving cylinders, generated and from DynaBARN's files."""
 
 import numpy as np
 import pytest
@@ -31,27 +31,27 @@ def places(arena):
 
 
 @pytest.mark.parametrize("source", [CylinderFields(), CrossingCylinders()], ids=["fields", "crossings"])
-def test_a_seed_has_a_world_of_its_own(source):
+def test_each_seed_has_a_different_world(source):
     uncached = type(source).arena.__globals__["_arena"].__wrapped__
     arguments = (1,) if isinstance(source, CylinderFields) else (source, 1)
     assert places(source.arena(1)) == places(uncached(*arguments)) != places(source.arena(2))
 
 
-def test_there_is_a_way_through_every_field():
+def test_every_field_has_a_path():
     lengths = [CylinderFields().arena(seed).reference_length for seed in range(8)]
     assert all(length is not None and 10.0 <= length < 14.0 for length in lengths), lengths
     assert len(set(lengths)) > 1
 
 
 @pytest.mark.parametrize("legs", [1, 4])
-def test_crossings_go_there_and_back_without_a_leap(legs):
+def test_crossing_cylinders_move_back_and_forth_continuously(legs):
     for trajectory in CrossingCylinders(1.0, 1.0, legs=legs).arena(3).world.trajectories:
         places_xy = np.array([trajectory.at(stamp) for stamp in np.arange(0.0, 100.0, 0.1)])
         speeds = np.hypot(*np.diff(places_xy, axis=0).T) / 0.1
         assert np.median(speeds) > 0.85 and speeds.max() < 1.15
 
 
-def test_crossings_are_as_many_and_turn_as_often_as_asked_for():
+def test_crossing_cylinders_have_the_requested_number_and_legs():
     trajectories = CrossingCylinders(1.0, 1.0, min_count=20, max_count=22, legs=4).arena(3).world.trajectories
     assert 20 <= len(trajectories) <= 22
     assert {len(trajectory.times) for trajectory in trajectories} == {2 * 4 + 2}
@@ -66,7 +66,7 @@ def folder(tmp_path):
     return tmp_path
 
 
-def test_dynabarns_worlds_are_taken_by_turns_and_move(folder):
+def test_dynabarn_worlds_are_used_in_turn_and_move(folder):
     source = DynabarnFolder(folder / "worlds")
     assert [source.arena(seed).title for seed in range(3)] == ["DynaBARN 0", "DynaBARN 5", "DynaBARN 10"]
     arena = source.arena(0)
@@ -74,7 +74,7 @@ def test_dynabarns_worlds_are_taken_by_turns_and_move(folder):
     assert [trajectory.at(5.0) for trajectory in arena.world.trajectories] == [(3.0, 0.0)]
 
 
-def test_a_scenario_of_dynabarn_is_played(folder):
+def test_a_dynabarn_scenario_runs(folder):
     (scenario,), complaints = load_suites([str(folder / "scenario.yaml")])
     assert complaints == []
     assert run_scenario(scenario, 0).outcome == "success"
@@ -88,7 +88,7 @@ def test_a_scenario_of_dynabarn_is_played(folder):
         ("keyframes: [[0, 3, x]]", "keyframes must be lists of 3 numbers"),
     ],
 )
-def test_a_wrong_world_is_told(folder, wrong, complaint):
+def test_an_invalid_world_is_reported(folder, wrong, complaint):
     (folder / "worlds/dynabarn_0.yaml").write_text(WORLD.replace(WORLD[WORLD.index("keyf") : -2], wrong))
     _, complaints = load_suites([str(folder / "scenario.yaml")])
     assert len(complaints) == 1 and complaint in complaints[0]

@@ -1,4 +1,4 @@
-"""What nodes are told of a scenario, and what is read from what they leave."""
+"""Runs over ROS: the files written for the nodes, and the results read from their run folder."""
 
 import json
 from dataclasses import replace
@@ -18,7 +18,7 @@ from sim_bridge.faults import Fault, load_faults
 ERRAND = FOLDER / "home_errand.yaml"
 
 
-def test_chores_of_a_generated_home_are_told_as_files(tmp_path):
+def test_generated_deliveries_are_written_as_files(tmp_path):
     homes = read_scenario(FOLDER / "homes.yaml")
     arena = homes.arena(3)
     arguments = write_launch_files(homes, 3, tmp_path)
@@ -30,7 +30,7 @@ def test_chores_of_a_generated_home_are_told_as_files(tmp_path):
     assert arguments["marker_mode"] == "mission"
 
 
-def test_faults_start_noise_and_parameters_are_told_as_files(tmp_path):
+def test_faults_start_noise_and_parameters_are_written_as_files(tmp_path):
     faults = (Fault("scan_noisy", 8.0, 12.0, 3.0), Fault("kidnapped", 4.0, strength=1.0, seed=3))
     parameters = {"DWAPlannerROS": {"max_vel_x": 0.4}}
     scenario = replace(
@@ -38,27 +38,27 @@ def test_faults_start_noise_and_parameters_are_told_as_files(tmp_path):
     )
     arguments = write_launch_files(scenario, 0, tmp_path)
     assert load_faults(arguments["faults_file"]) == faults
-    told = yaml.safe_load(arguments["parameters_file"].read_text())
-    assert told["/amcl"] == {"initial_pose_x": 0.5, "initial_pose_y": 0.1, "initial_pose_a": 0.2}
-    assert told["/move_base"] == parameters
-    assert told["/sim_bridge"]["range_noise"] == scenario.simulation.range_noise
+    parameters_file = yaml.safe_load(arguments["parameters_file"].read_text())
+    assert parameters_file["/amcl"] == {"initial_pose_x": 0.5, "initial_pose_y": 0.1, "initial_pose_a": 0.2}
+    assert parameters_file["/move_base"] == parameters
+    assert parameters_file["/sim_bridge"]["range_noise"] == scenario.simulation.range_noise
     assert (arguments["planner"], arguments["marker_mode"]) == ("x/Y", "service")
 
 
-def test_what_nodes_cannot_play_is_said_before_anything_is_played():
+def test_a_task_that_cannot_run_over_ros_is_refused_before_the_start():
     scenarios, complaints = load_suites(["fields"], is_over_ros=True)
     assert not scenarios
-    assert "fields.yaml: the task reach is played in one process only" in complaints[0]
+    assert "fields.yaml: the task reach runs in one process only" in complaints[0]
 
 
-def test_the_official_move_base_plays_only_over_ros_and_only_where_it_is_installed(tmp_path, monkeypatch):
-    with pytest.raises(SettingsError, match="planner official: that move_base is a node: add --over ros"):
+def test_the_official_move_base_runs_only_over_ros_and_only_if_installed(tmp_path, monkeypatch):
+    with pytest.raises(SettingsError, match="planner official runs only over ROS; add --over ros"):
         load_suites(["home_errand"], ["official"])
     monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path))
-    with pytest.raises(SettingsError, match="the official move_base is not there"):
+    with pytest.raises(SettingsError, match="the official move_base is not installed"):
         load_suites(["home_errand"], ["official"], is_over_ros=True)
     monkeypatch.setenv("ROS_PACKAGE_PATH", str(FOLDER.parent / "src"))
-    with pytest.raises(SettingsError, match="the official move_base is not there"):
+    with pytest.raises(SettingsError, match="the official move_base is not installed"):
         load_suites(["home_errand"], ["official"], is_over_ros=True)
     package = "<package><name>move_base</name></package>"
     (tmp_path / "package.xml").write_text(package)
@@ -69,24 +69,24 @@ def test_the_official_move_base_plays_only_over_ros_and_only_where_it_is_install
     assert "planner" not in arguments
 
 
-def test_the_way_is_as_long_whichever_planner_drives():
+def test_the_reference_length_does_not_depend_on_the_planner():
     ours = read_scenario(ERRAND)
     arena, official = ours.arena(0), replace(ours, planner=OFFICIAL, is_over_ros=True)
     assert official.task.reference_length(official, arena) == ours.task.reference_length(ours, arena) > 5.0
 
 
-def test_a_file_that_asks_for_the_official_move_base_is_not_played_in_one_process(tmp_path):
+def test_a_scenario_with_the_official_move_base_is_refused_in_one_process(tmp_path):
     file = tmp_path / "with_official.yaml"
     text = ERRAND.read_text().replace("../map", str(FOLDER.parent / "map"))
     file.write_text(text + "planner: {name: official}\n")
     scenarios, complaints = load_suites([str(file)])
     assert not scenarios
-    assert complaints == [f"{file}: planner official: that move_base is a node: add --over ros"]
+    assert complaints == [f"{file}: planner official runs only over ROS; add --over ros"]
     (scenario,), _ = load_suites([str(file)], ["move_base_lite/MppiPlannerROS"])
     assert scenario.planner == "move_base_lite/MppiPlannerROS"
 
 
-def test_results_over_ros_have_keys_of_their_own():
+def test_results_over_ros_are_stored_separately():
     scenario = read_scenario(ERRAND)
     over_ros = replace(scenario, is_over_ros=True)
     assert over_ros.digest() != scenario.digest()
@@ -103,18 +103,18 @@ def test_results_over_ros_have_keys_of_their_own():
     ],
 )
 def test_a_run_folder_is_read_as_a_result(tmp_path, result, outcome):
-    (tmp_path / "result.json").write_text(json.dumps({"reason": "said", **result}))
+    (tmp_path / "result.json").write_text(json.dumps({"reason": "stated", **result}))
     still = " 0 0 0 0 0.0 1.0\n"
     (tmp_path / "trajectory_true.tum").write_text(f"0.0 0.0{still}2.0 1.0{still}")
     (tmp_path / "trajectory_estimated.tum").write_text(f"1.0 0.75{still}")
     trace = _read_trace(tmp_path, 300.0)
-    assert (trace.outcome, trace.reason) == (outcome, "said")
+    assert (trace.outcome, trace.reason) == (outcome, "stated")
     assert trace.localization_error.tolist() == [0.25]
     assert trace.trajectory.tolist() == [[0.0, 0.0, 0.0, 0.0], [2.0, 1.0, 0.0, 0.0]]
 
 
-def test_what_nodes_do_after_the_end_is_none_of_the_run(tmp_path):
-    result = {"success": True, "reason": "said", "simulated_seconds": 2.0}
+def test_poses_after_the_end_of_the_mission_are_ignored(tmp_path):
+    result = {"success": True, "reason": "stated", "simulated_seconds": 2.0}
     (tmp_path / "result.json").write_text(json.dumps(result))
     poses = "".join(f"{stamp} {x} 0 0 0 0 0.0 1.0\n" for stamp, x in ((0.1, 0.0), (2.1, 1.0), (3.0, 1.0)))
     for name in ("true", "estimated"):
@@ -124,7 +124,7 @@ def test_what_nodes_do_after_the_end_is_none_of_the_run(tmp_path):
     assert trace.localization_error.tolist() == [0.0, 0.0]
 
 
-def test_a_graph_that_never_ran_is_told_by_its_reason(tmp_path):
+def test_a_graph_that_did_not_start_is_reported_with_its_reason(tmp_path):
     (tmp_path / "result.json").write_text(json.dumps({"success": False, "reason": "no ROS master"}))
     with pytest.raises(SettingsError, match="no ROS master"):
         _read_trace(tmp_path, 300.0)

@@ -19,25 +19,25 @@ from sim_bridge.faults import Fault
 ERRAND = FOLDER / "home_errand.yaml"
 
 
-def test_a_seed_is_played_alike_and_measured():
+def test_a_run_is_repeatable_and_measured():
     scenario = read_scenario(ERRAND)
     first, again = run_scenario(scenario, 3), run_scenario(scenario, 3)
     assert replace(first, wall_seconds=0.0) == replace(again, wall_seconds=0.0)
     assert first.is_success, first.reason
     assert first.way is not None and first.driven is not None
-    # The zones are reached within centimetres, so that no way is much shorter than the shortest.
+    # The zones are reached within centimetres, so no path is much shorter than the shortest one.
     assert 0.9 * first.way < first.driven < 1.6 * first.way
     assert first.clearance is not None and 0.15 < first.clearance < 1.0
     assert first.localization_mean is not None and first.localization_mean < 0.1
 
 
-def test_what_makes_a_run_impossible_is_its_result():
+def test_a_run_that_cannot_be_executed_is_an_error():
     crowded = replace(read_scenario(ERRAND), boxes=500)
     result = run_scenario(crowded, 0)
-    assert result.outcome == "error" and "there is room for" in result.reason
+    assert result.outcome == "error" and "there is space for" in result.reason
 
 
-def test_a_run_that_takes_too_long_has_run_out_of_time():
+def test_a_run_that_takes_too_long_is_a_timeout():
     result = run_scenario(replace(read_scenario(ERRAND), seconds=2.0), 1)
     assert result.outcome == "timeout" and "not done within 2" in result.reason
 
@@ -53,7 +53,7 @@ def test_a_goal_is_reached_without_a_map():
     assert result.localization_mean is None and result.way is None
 
 
-def test_what_happens_to_the_robot_does_so_without_a_map_too():
+def test_faults_also_apply_without_a_map():
     home = read_scenario(ERRAND)
     source = WorldFile(home.world.files()[0])
     rates = SimulationSettings(odometry_rate=100, scan_rate=20)
@@ -64,7 +64,7 @@ def test_what_happens_to_the_robot_does_so_without_a_map_too():
     assert np.hypot(*np.diff(run.trajectory[:, 1:3], axis=0).T).max() > 0.3
 
 
-def test_boxes_stand_apart_and_leave_room_at_the_places():
+def test_boxes_keep_their_distance_and_leave_goals_free():
     scenario = replace(read_scenario(ERRAND), boxes=10)
     arena = scenario.arena(4)
     places = [(pose.x, pose.y) for pose in scenario.task.required_poses(arena)]
@@ -77,16 +77,16 @@ def test_boxes_stand_apart_and_leave_room_at_the_places():
     np.testing.assert_array_equal(again, [body.pose_in_world for body in arena.world.bodies])
 
 
-def test_the_shortest_way_goes_round_a_wall():
+def test_the_shortest_path_goes_round_a_wall():
     room = grid_from_picture("\n".join(["." * 41] * 20 + ["#" * 31 + "." * 10] + ["." * 41] * 20), 0.1)
-    ways = ShortestPaths(room, 0.2)
+    paths = ShortestPaths(room, 0.2)
     below, above = Pose2(0.55, 0.55), Pose2(0.55, 3.55)
     corner = math.hypot(3.35 - 0.55, 2.05 - 0.55)
-    assert ways.length((below, above)) == pytest.approx(2 * corner, rel=0.05)
-    assert ways.length((below, Pose2(2.55, 0.55))) == pytest.approx(2.0, abs=0.02)
+    assert paths.length((below, above)) == pytest.approx(2 * corner, rel=0.05)
+    assert paths.length((below, Pose2(2.55, 0.55))) == pytest.approx(2.0, abs=0.02)
 
 
-def test_there_is_no_way_through_a_closed_wall():
+def test_there_is_no_path_through_a_closed_wall():
     room = grid_from_picture("\n".join(["." * 20] * 10 + ["#" * 20] + ["." * 20] * 10), 0.1)
     assert ShortestPaths(room, 0.1).length((Pose2(0.5, 0.5), Pose2(0.5, 1.6))) is None
 

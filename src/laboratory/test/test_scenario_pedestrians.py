@@ -1,4 +1,4 @@
-"""People in scenarios: who they are, where they are, and what they had of the robot."""
+"""Pedestrians of scenarios: kinds, start positions and social metrics."""
 
 import sqlite3
 from dataclasses import replace
@@ -12,7 +12,7 @@ from laboratory.results.store import COLUMNS, ResultStore
 from laboratory.runner import run_scenario
 from laboratory.scenario import read_scenario
 from laboratory.suites import FOLDER
-from laboratory.worlds.people import APART, START_CLEARANCE, Pedestrians
+from laboratory.worlds.people import SPACING, START_CLEARANCE, Pedestrians
 from planar import SettingsError
 
 SCENARIO = FOLDER / "home_people.yaml"
@@ -25,7 +25,7 @@ def written(tmp_path, people):
     return path
 
 
-def test_as_many_are_there_as_asked_for_and_others_for_each_seed():
+def test_their_number_is_as_requested_and_each_seed_has_different_ones():
     scenario = read_scenario(SCENARIO)
     crowds = [scenario.arena(seed).world.walkers for seed in range(12)]
     assert [len(walkers) for walkers in crowds] == [4] * 12
@@ -36,12 +36,12 @@ def test_as_many_are_there_as_asked_for_and_others_for_each_seed():
     assert np.hypot(*firsts.reshape(-1, 2).T).min() > START_CLEARANCE
     for starts in firsts:
         gaps = [np.hypot(*(a - b)) for n, a in enumerate(starts) for b in starts[:n]]
-        assert min(gaps) > APART
+        assert min(gaps) > SPACING
     kinds = {(walker.radius, len(walker.goals_xy) > 1, walker.group > 0) for ws in crowds for walker in ws}
     assert {(0.2, True, False), (0.15, True, False), (0.2, False, False), (0.2, True, True)} <= kinds
 
 
-def test_they_can_be_told_apart(tmp_path):
+def test_numbers_can_be_given_by_kind(tmp_path):
     people = "{adults: 1, children: 2, standing: 1, groups: [3]}"
     scenario = read_scenario(written(tmp_path, people))
     assert scenario.people == Pedestrians(adults=1, children=2, standing=1, groups=(3,))
@@ -51,7 +51,7 @@ def test_they_can_be_told_apart(tmp_path):
     assert [len(walker.goals_xy) for walker in walkers] == [4] * 6 + [1]
 
 
-def test_all_may_be_known_of_them(tmp_path):
+def test_routes_can_be_given(tmp_path):
     people = "[{goals: [[1.0, 2.0], [2, 3]], speed: 0.7}, {goals: [[0.5, 2.0]]}]"
     walkers = read_scenario(written(tmp_path, people)).arena(0).world.walkers
     assert [walker.goals_xy.tolist() for walker in walkers] == [[[1.0, 2.0], [2.0, 3.0]], [[0.5, 2.0]]]
@@ -64,27 +64,27 @@ def test_all_may_be_known_of_them(tmp_path):
         ("-1", ":4: happens.people must be"),
         ("many", ":4: happens.people must be a table"),
         ("{adlts: 1}", ":4: happens.people.adlts is not known; did you mean adults?"),
-        ("{groups: [1]}", ":4: happens.people.groups must be a list of how many walk together"),
-        ("{groups: 2}", ":4: happens.people.groups must be a list of how many walk together"),
-        ("[{goals: []}]", ":4: happens.people[1].goals must be a list of places"),
-        ("[{goals: [[1, a]]}]", ":4: happens.people[1].goals must be a list of places"),
+        ("{groups: [1]}", ":4: happens.people.groups must be a list of group sizes"),
+        ("{groups: 2}", ":4: happens.people.groups must be a list of group sizes"),
+        ("[{goals: []}]", ":4: happens.people[1].goals must be a list of [x, y]"),
+        ("[{goals: [[1, a]]}]", ":4: happens.people[1].goals must be a list of [x, y]"),
         ("[{goals: [[1, 2]], speed: 0}]", ":4: happens.people[1].speed must be positive"),
         ("50", ":4: happens.people must be at most 40"),
     ],
 )
-def test_a_mistake_is_told_with_line_and_key(tmp_path, people, complaint):
+def test_an_error_names_line_and_key(tmp_path, people, complaint):
     with pytest.raises(SettingsError) as caught:
         read_scenario(written(tmp_path, people))
     assert complaint in str(caught.value)
 
 
-def test_too_many_for_a_small_place_are_an_error():
+def test_too_many_pedestrians_are_an_error():
     scenario = replace(read_scenario(SCENARIO), people=Pedestrians(adults=400))
     result = run_scenario(scenario, 0)
-    assert result.outcome == "error" and "no room for so many people" in result.reason
+    assert result.outcome == "error" and "not enough space for so many people" in result.reason
 
 
-def test_a_run_among_people_is_played_alike_and_measured():
+def test_a_run_among_pedestrians_is_repeatable_and_measured():
     scenario = read_scenario(SCENARIO)
     first, again = run_scenario(scenario, 3), run_scenario(scenario, 3)
     assert replace(first, wall_seconds=0.0) == replace(again, wall_seconds=0.0)
@@ -97,7 +97,7 @@ def test_a_run_among_people_is_played_alike_and_measured():
     assert first.ran_into_robot == 0
 
 
-def test_spaces_are_told_by_the_nearest_person():
+def test_personal_spaces_are_those_of_the_nearest_person():
     track = np.column_stack((np.arange(5) * 0.1, np.zeros((5, 3))))
     people = np.zeros((5, 2, 5))
     people[:, 0, 0], people[:, 1, 0] = (0.4, 0.45, 1.0, 1.2, 4.0), 9.0
@@ -108,7 +108,7 @@ def test_spaces_are_told_by_the_nearest_person():
     assert social_metrics(track, np.empty((5, 0, 5))).intimate is None
 
 
-def test_social_work_is_the_less_the_farther_off_people_are():
+def test_social_work_decreases_with_distance():
     track = np.column_stack((np.arange(5) * 0.1, np.zeros((5, 3))))
     works = []
     for distance in (0.6, 1.2, 3.0):
@@ -117,14 +117,14 @@ def test_social_work_is_the_less_the_farther_off_people_are():
     assert works[0] > 2.0 * works[1] > 20.0 * works[2] > 0.0
 
 
-def test_standing_still_is_measured_in_seconds():
+def test_time_without_motion_is_measured():
     x = np.array([0.0, 0.0, 0.1, 0.2, 0.2])
     yaw = np.array([0.0, 0.0, 0.0, 0.0, 0.1])
     track = np.column_stack((np.arange(5) * 0.5, x, np.zeros(5), yaw))
-    assert seconds_still(track) == pytest.approx(0.5), "who turns moves"
+    assert seconds_still(track) == pytest.approx(0.5), "turning counts as motion"
 
 
-def test_a_file_of_results_from_before_there_were_people_is_gone_on_with(tmp_path):
+def test_an_old_results_file_gets_the_new_columns(tmp_path):
     path = tmp_path / "results.sqlite"
     columns = [f"{name} {kind}" for name, kind in COLUMNS.items() if name != "social_work"]
     with sqlite3.connect(str(path)) as connection:

@@ -9,7 +9,7 @@ from laboratory.suites import FOLDER, load_suites
 from planar import Pose2, SettingsError
 
 ROOT = FOLDER.parent
-WHOLE = """\
+ALL_KEYS = """\
 about: all keys
 world: {file: ROOT/map/home.world, map: ROOT/map/home.yaml}
 robot: {profile: turtlebot_lidar, start: {x: 0.5, y: 0.1, yaw: 0.2}}
@@ -31,7 +31,7 @@ def written(folder: Path, text: str) -> Path:
 
 
 def test_every_key_of_a_scenario_is_read(tmp_path):
-    scenario = read_scenario(written(tmp_path, WHOLE))
+    scenario = read_scenario(written(tmp_path, ALL_KEYS))
     assert scenario.name == "scenario" and scenario.about == "all keys"
     assert scenario.start == Pose2(0.5, 0.1, 0.2)
     assert (scenario.simulation.range_noise, scenario.simulation.encoder_scale) == (0.02, 0.06)
@@ -66,18 +66,18 @@ def test_every_key_of_a_scenario_is_read(tmp_path):
         ("0-4,9", "9-4", ":11: seeds cannot be used: seeds must be like 0-999"),
     ],
 )
-def test_a_mistake_is_told_with_file_line_and_key(tmp_path, was, becomes, complaint):
-    assert was in WHOLE
-    path = written(tmp_path, WHOLE.replace(was, becomes))
+def test_an_error_names_file_line_and_key(tmp_path, was, becomes, complaint):
+    assert was in ALL_KEYS
+    path = written(tmp_path, ALL_KEYS.replace(was, becomes))
     with pytest.raises(SettingsError) as error:
         read_scenario(path)
     assert str(error.value).startswith(str(path)) and complaint in str(error.value)
 
 
-def test_a_scenario_that_cannot_be_played_is_named_and_the_others_are_played(tmp_path):
-    in_a_wall = written(tmp_path, WHOLE.replace("{x: 0.5, y: 0.1, yaw: 0.2}", "{x: 50.0, y: 0.0}"))
-    (tmp_path / "good.yaml").write_text(WHOLE.replace("ROOT", str(ROOT)))
-    lost = WHOLE.replace("ROOT/map/home.world", "nowhere.world")
+def test_a_scenario_that_cannot_run_is_named_and_the_others_are_loaded(tmp_path):
+    in_a_wall = written(tmp_path, ALL_KEYS.replace("{x: 0.5, y: 0.1, yaw: 0.2}", "{x: 50.0, y: 0.0}"))
+    (tmp_path / "good.yaml").write_text(ALL_KEYS.replace("ROOT", str(ROOT)))
+    lost = ALL_KEYS.replace("ROOT/map/home.world", "nowhere.world")
     (tmp_path / "lost.yaml").write_text(lost.replace("ROOT", str(ROOT)))
     scenarios, complaints = load_suites([str(tmp_path)])
     assert [scenario.name for scenario in scenarios] == ["good"]
@@ -86,19 +86,19 @@ def test_a_scenario_that_cannot_be_played_is_named_and_the_others_are_played(tmp
     assert str(in_a_wall) in complaints[1] and "robot.start (50, 0) lies outside the map" in complaints[1]
 
 
-def test_a_suite_that_is_not_there_is_refused():
-    with pytest.raises(SettingsError, match="nonsense: neither a file nor a folder nor one of scenarios"):
+def test_a_missing_suite_is_refused():
+    with pytest.raises(SettingsError, match="nonsense: not a file, a folder or one of scenarios"):
         load_suites(["nonsense"])
 
 
 @pytest.mark.parametrize("planner", ["Nonsense", "no_such.module/Nonsense"])
-def test_a_planner_that_is_not_there_is_refused_before_anything_is_played(planner):
+def test_a_missing_planner_is_refused_before_the_start(planner):
     with pytest.raises(SettingsError, match=planner):
         load_suites(["home_errand"], ["move_base_lite/MppiPlannerROS", planner])
 
 
-def test_a_digest_tells_scenarios_apart_by_what_they_say_and_not_by_their_names(tmp_path):
-    scenario = read_scenario(written(tmp_path, WHOLE))
+def test_a_digest_depends_on_the_values_of_a_scenario_and_not_on_its_name(tmp_path):
+    scenario = read_scenario(written(tmp_path, ALL_KEYS))
     assert replace(scenario, name="other", about="", seeds=(7,)).digest() == scenario.digest()
     others = [
         scenario.with_planner(""),
@@ -113,19 +113,19 @@ def test_a_digest_tells_scenarios_apart_by_what_they_say_and_not_by_their_names(
 def test_a_digest_changes_with_a_file_of_the_scenario(tmp_path):
     zones = tmp_path / "zones.yaml"
     zones.write_text((ROOT / "map/zones.yaml").read_text())
-    path = written(tmp_path, WHOLE.replace("ROOT/map/zones.yaml", "zones.yaml"))
+    path = written(tmp_path, ALL_KEYS.replace("ROOT/map/zones.yaml", "zones.yaml"))
     before = read_scenario(path).digest()
     zones.write_text(zones.read_text().replace("x: 2.0", "x: 1.9"))
     assert read_scenario(path).digest() != before
 
 
 @pytest.mark.parametrize("path", sorted(FOLDER.glob("home*.yaml")), ids=lambda path: path.stem)
-def test_the_scenarios_of_the_project_can_be_played(path):
+def test_the_included_scenarios_can_be_loaded(path):
     scenarios, complaints = load_suites([str(path)])
     assert complaints == [] and len(scenarios) == 1
 
 
-def test_seeds_are_written_as_people_do():
+def test_seeds_are_lists_of_numbers_and_ranges():
     assert parse_seeds("7") == (7,)
     assert parse_seeds("0-3,2,9") == (0, 1, 2, 3, 9)
     for nonsense in ("", "a", "3-1", "-1", "1-", "0-99999999"):

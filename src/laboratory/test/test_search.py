@@ -1,4 +1,4 @@
-"""Searches repeat themselves, go on where they were stopped, and find what there is to find."""
+"""Searches are repeatable, resumable, and find the minimum."""
 
 import math
 from dataclasses import replace
@@ -31,7 +31,7 @@ def bowl(batch):
 
 
 def asked(path, trials, stop_after=math.inf):
-    """All values that a search asks for; after so many batches it is stopped in the middle of one."""
+    """All values a search samples; after ``stop_after`` batches it is interrupted in the middle of one."""
     seen = []
 
     def costs_of(batch):
@@ -48,24 +48,24 @@ def asked(path, trials, stop_after=math.inf):
     return seen, study.best
 
 
-def test_a_search_comes_near_the_least_cost(tmp_path):
+def test_a_search_approaches_the_minimum(tmp_path):
     _, best = asked(tmp_path / "journal", 64)
     assert math.hypot(best["x"] - 1.0, best["y"] + 0.5) < 0.3
 
 
-def test_a_search_that_was_stopped_goes_on_as_if_it_had_not_been(tmp_path):
+def test_an_interrupted_search_continues_with_the_same_values(tmp_path):
     whole, best = asked(tmp_path / "whole", 20)
     first = asked(tmp_path / "stopped", 20, stop_after=1)
     rest, again = asked(tmp_path / "stopped", 20)
     assert first + rest == whole and again == best
 
 
-def test_a_journal_that_is_none_is_named(tmp_path):
+def test_an_unusable_journal_is_named(tmp_path):
     with pytest.raises(Exception, match="cannot be used as a journal"):
         Study(tmp_path, "bowl", SPACE, 0)
 
 
-def test_cases_are_as_hard_as_allowed_and_no_harder():
+def test_cases_stay_within_their_space():
     base = read_scenario(ERRAND)
     case_space = CaseSpace(boxes=3, people=2, faults=1)
     values = {name: 0.4 for name in case_space.space()}
@@ -74,7 +74,7 @@ def test_cases_are_as_hard_as_allowed_and_no_harder():
     boxes = case.of(Pose2)
     assert [len(case.of(kind)) for kind in (Pose2, PedestrianRoute, Fault, NoiseProfile)] == [3, 2, 1, 1]
     gaps = [a.distance_to(b) for number, a in enumerate(boxes) for b in boxes[:number]]
-    assert min(gaps) >= BOX_SPACING - 0.01, "a way is left between boxes, also if all are wanted in one place"
+    assert min(gaps) >= BOX_SPACING - 0.01, "boxes leave a passage, even if all are sampled at one position"
     scenario = case.scenario(base)
     assert scenario.simulation.encoder_scale > base.simulation.encoder_scale
     assert scenario.simulation.scan_rate == base.simulation.scan_rate
@@ -84,7 +84,7 @@ def test_cases_are_as_hard_as_allowed_and_no_harder():
     assert scenario.faults == (Fault("scan_nan", 3.0, 5.0, scenario.faults[0].strength),)
 
 
-def test_only_the_pieces_that_it_takes_are_left():
+def test_shrinking_leaves_only_the_necessary_elements():
     case = Case(4, (BOX, WALK, FAULT, NoiseProfile("high")))
     attempts = []
 
@@ -98,7 +98,7 @@ def test_only_the_pieces_that_it_takes_are_left():
     assert shrink_case(case, lambda smaller: False) == case
 
 
-def test_a_failure_is_harder_than_any_success_and_an_error_is_none():
+def test_a_failure_is_less_robust_than_any_success_and_an_error_does_not_count():
     won = RunResult("d", 1, "v", "success", "", seconds=30.0, clearance=0.3, localization_max=0.1)
     close = replace(won, clearance=0.2)
     assert robustness(close, 600.0) < robustness(won, 600.0)
@@ -107,7 +107,7 @@ def test_a_failure_is_harder_than_any_success_and_an_error_is_none():
     assert robustness(replace(won, outcome="error"), 600.0) >= robustness(won, 600.0)
 
 
-def test_a_case_is_written_as_a_scenario_that_is_played_alike(tmp_path):
+def test_a_case_is_written_as_an_equal_scenario(tmp_path):
     base = read_scenario(ERRAND)
     case = Case(4, (BOX, WALK, FAULT, NoiseProfile("high")))
     path = write_case(base, case, RunResult("d", 4, "v", "timeout", "too late"), tmp_path)
@@ -118,7 +118,7 @@ def test_a_case_is_written_as_a_scenario_that_is_played_alike(tmp_path):
     assert "happens" not in nothing
 
 
-def test_parameters_are_nested_as_move_base_has_them(tmp_path):
+def test_parameters_are_nested_as_for_move_base(tmp_path):
     path = tmp_path / "space.yaml"
     path.write_text("Planner: {speed: [0.1, 0.5], Inner: {weight: [1, 2]}}\npatience: [1.0, 5.0]\n")
     space = read_space(path)
@@ -132,14 +132,14 @@ def test_parameters_are_nested_as_move_base_has_them(tmp_path):
     assert yaml.safe_load(parameter_file_text(values)) == nested(values)
 
 
-def test_a_space_that_is_none_is_told_with_line_and_key(tmp_path):
+def test_an_invalid_space_is_reported_with_line_and_key(tmp_path):
     path = tmp_path / "space.yaml"
     path.write_text("Planner:\n  speed: [0.5, 0.1]\n")
     with pytest.raises(SettingsError, match=r"space.yaml:2: Planner.speed must be two numbers, the lesser"):
         read_space(path)
 
 
-def test_the_space_that_is_tuned_by_default_is_one_of_parameters_that_there_are(tmp_path):
+def test_the_default_space_contains_only_known_parameters(tmp_path):
     base = read_scenario(ERRAND)
     space = read_space(FOLDER / "tuning/mppi.yaml")
     values = {name: (each.low + each.high) / 2.0 for name, each in space.items()}

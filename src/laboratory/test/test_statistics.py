@@ -41,14 +41,14 @@ def test_a_mean_has_a_bootstrap_interval_that_is_the_same_each_time():
 
 
 def test_figures_of_runs():
-    told = summary([*runs(["success"] * 3), replace(WON, seed=9, outcome="collision", seconds=5.0)])
-    assert told.outcomes["success"] == 3 and told.outcomes["collision"] == 1
-    assert told.figures["success"].value == 0.75 and told.figures["seconds"].value == 20.0
-    assert told.figures["spl"].value == pytest.approx(0.75 * 0.8)
-    assert "localization" not in told.figures
+    totals = summary([*runs(["success"] * 3), replace(WON, seed=9, outcome="collision", seconds=5.0)])
+    assert totals.outcomes["success"] == 3 and totals.outcomes["collision"] == 1
+    assert totals.figures["success"].value == 0.75 and totals.figures["seconds"].value == 20.0
+    assert totals.figures["spl"].value == pytest.approx(0.75 * 0.8)
+    assert "localization" not in totals.figures
 
 
-def test_success_by_way_is_never_more_than_one():
+def test_success_weighted_by_path_length_is_at_most_one():
     assert success_weighted_by_path_length(replace(WON, driven=7.0)) == 1.0
     assert success_weighted_by_path_length(replace(WON, outcome="timeout")) == 0.0
     assert success_weighted_by_path_length(replace(WON, way=None)) is None
@@ -62,22 +62,22 @@ def test_planners_are_compared_on_the_same_seeds_by_an_exact_test():
     # Two-sided binomial: 2 (C(9, 0) + C(9, 1)) / 2^9.
     assert found.p_success == pytest.approx(20 / 512)
     assert found.success == "better" and compare(second, first).success == "worse"
-    assert found.time == "cannot tell"
+    assert found.time == "undecided"
 
 
-def test_without_enough_proof_one_cannot_tell():
-    assert compare(runs(["success"] * 9 + ["timeout"]), runs(["success"] * 10)).success == "cannot tell"
-    assert compare([], runs(["success"])).success == "cannot tell"
+def test_a_small_difference_is_undecided():
+    assert compare(runs(["success"] * 9 + ["timeout"]), runs(["success"] * 10)).success == "undecided"
+    assert compare([], runs(["success"])).success == "undecided"
 
 
 def test_a_planner_that_is_always_a_second_slower_is_worse():
     slower = runs(["success"] * 12, seconds=21.0)
     found = compare(runs(["success"] * 12), slower)
     assert found.seconds is not None and found.seconds.value == 1.0
-    assert (found.success, found.time) == ("cannot tell", "worse")
+    assert (found.success, found.time) == ("undecided", "worse")
 
 
-def test_a_requirement_is_read_and_held_against_figures():
+def test_a_requirement_is_parsed_and_checked_against_figures():
     figures = summary(runs(["success"] * 98 + ["timeout"] * 2)).figures
     assert parse_requirement("success >= 0.98").is_met(figures)
     assert not parse_requirement("success>0.98").is_met(figures)
@@ -94,24 +94,26 @@ def evaluated(outcomes, planner="", **others):
     return EvaluatedScenario(scenario, "d", runs(outcomes, **others))
 
 
-def test_a_broken_rule_names_its_scenario():
+def test_a_violated_requirement_names_its_scenario():
     rules = [parse_requirement("success >= 1")]
-    assert violated_requirements([evaluated(["timeout"])], rules) == ["home_errand: not success >= 1"]
+    assert violated_requirements([evaluated(["timeout"])], rules) == [
+        "home_errand: requirement not met: success >= 1"
+    ]
 
 
-def test_a_version_that_is_worse_than_another_is_named():
+def test_a_regression_is_named():
     good, bad = evaluated(["success"] * 10), evaluated(["timeout"] * 8 + ["success"] * 2)
     (line,) = regressions([bad], [good])
     assert line.startswith("home_errand: worse than before: success: worse (+0 −8")
     assert regressions([good], [bad]) == [] and regressions([good], []) == []
 
 
-def test_the_terminal_tells_figures_and_how_planners_compare():
+def test_the_report_lists_figures_and_compares_planners():
     lines = summary_lines([evaluated(["success"] * 4), evaluated(["success"] * 3 + ["collision"], "other")])
     assert lines[0] == "home_errand: 4 runs: 4 success"
     assert "home_errand [other]: 4 runs: 3 success, 1 collision" in lines
-    assert lines[-1] == "  beside home_errand: success: cannot tell (+0 −1, p 1)"
-    assert summary_lines([evaluated([])]) == ["home_errand: 0 runs: none played"]
+    assert lines[-1] == "  compared with home_errand: success: undecided (+0 −1, p 1)"
+    assert summary_lines([evaluated([])]) == ["home_errand: 0 runs: none completed"]
 
 
 def test_results_are_exported_as_tables(tmp_path):

@@ -1,4 +1,4 @@
-"""A simulated robot that speaks ROS, for whatever node is a move_base, and the node itself."""
+"""A simulated robot with ROS topics for any move_base node, and the node itself."""
 
 import contextlib
 import subprocess
@@ -30,17 +30,14 @@ from planar_ros.messages.conversion import LaserScanArrays, grid_to_msg, pose2_t
 from sim_bridge import Simulation
 
 START_SECONDS = 60.0
-GAP = 1.0
+SETTLING_SECONDS = 1.0
 
 
 @contextlib.contextmanager
-def move_base(options, above: Mapping[str, Any] = {}) -> Iterator[subprocess.Popen]:
-    """A master and the node ``options.node`` with parameters as the launch file sets them, while it lasts.
-
-    ``above``: parameters over those of the file.
-    """
+def move_base(options, overrides: Mapping[str, Any] = {}) -> Iterator[subprocess.Popen]:
+    """Run a master and ``options.node`` with the parameters of ``options.config`` and ``overrides``."""
     with contextlib.closing(Master(options.port)):
-        node = _start_node(options, above)
+        node = _start_node(options, overrides)
         try:
             yield node
         finally:
@@ -48,8 +45,8 @@ def move_base(options, above: Mapping[str, Any] = {}) -> Iterator[subprocess.Pop
             node.wait()
 
 
-def _start_node(options, above: Mapping[str, Any]) -> subprocess.Popen:
-    parameters = merged(yaml.safe_load(Path(options.config).read_text(encoding="utf-8")), above)
+def _start_node(options, overrides: Mapping[str, Any]) -> subprocess.Popen:
+    parameters = merged(yaml.safe_load(Path(options.config).read_text(encoding="utf-8")), overrides)
     parameters.setdefault("DWAPlannerROS", {})["global_frame_id"] = "odom"
     if options.local_planner:
         parameters["base_local_planner"] = options.local_planner
@@ -71,7 +68,7 @@ def add_node_options(parser, config: Optional[Path]) -> None:
 
 
 class RobotOverRos:
-    """A Simulation that speaks ROS: clock, tf, odom and scan out, cmd_vel in; wall time paces it."""
+    """A simulation that publishes clock, tf, odom and scan and subscribes to cmd_vel, paced by wall time."""
 
     def __init__(self, speed: float, grid: Optional[OccupancyGrid] = None):
         self._speed = speed
@@ -85,11 +82,11 @@ class RobotOverRos:
         if grid is not None:
             self._map = rospy.Publisher("map", OccupancyGridMsg, queue_size=1, latch=True)
             self._map.publish(grid_to_msg(grid, rospy.Time(0), "map"))
-        self._begun = 0.0
+        self._time_offset = 0.0
 
-    def put(self, simulation: Simulation) -> None:
-        """Goes on with another simulation; its time is added to what has passed."""
-        self._begun = self.now if self._begun else GAP
+    def switch_simulation(self, simulation: Simulation) -> None:
+        """Continue with another simulation, whose time follows that of the previous one."""
+        self._time_offset = self.now if self._time_offset else SETTLING_SECONDS
         self._simulation, self._command = simulation, None
         self._wall = time.monotonic()
         self.step()
@@ -101,20 +98,20 @@ class RobotOverRos:
 
     @property
     def now(self) -> float:
-        return self._begun + self.observation.stamp
+        return self._time_offset + self.observation.stamp
 
     def step_for(self, seconds: float) -> None:
-        """Moves on by so many seconds."""
+        """Step for a simulated time [s]."""
         for _ in range(round(seconds / self._simulation.step_seconds)):
             self.step()
 
     def step(self) -> None:
-        """Moves on by one period of the odometry."""
+        """Step by one period of the odometry."""
         command, self._command = self._command, None
-        self.observation = seen = self._simulation.step(command)
+        self.observation = step_result = self._simulation.step(command)
         stamp = rospy.Time.from_sec(self.now)
-        odometry = seen.odometry
-        odom_in_map = seen.base_in_world @ odometry.base_in_odom.inverse()
+        odometry = step_result.odometry
+        odom_in_map = step_result.base_in_world @ odometry.base_in_odom.inverse()
         self._tf.publish(
             [
                 transform_msg(odom_in_map, "map", "odom", stamp + rospy.Duration(0.1)),
@@ -128,8 +125,8 @@ class RobotOverRos:
         message.twist.twist.linear.x = odometry.twist.v
         message.twist.twist.angular.z = odometry.twist.omega
         self._odom.publish(message)
-        if seen.scan is not None:
-            self._publish_scan(seen.scan, stamp)
+        if step_result.scan is not None:
+            self._publish_scan(step_result.scan, stamp)
         self._clock.publish(Clock(stamp))
         self._wall += self._simulation.step_seconds / self._speed
         time.sleep(max(0.0, self._wall - time.monotonic()))
@@ -155,14 +152,14 @@ def client_with_goal(robot: RobotOverRos, frame: str, goal: Pose2) -> actionlib.
         robot.step()
         if time.monotonic() > until:
             raise SystemExit("the node does not start")
-    robot.step_for(GAP)
+    robot.step_for(SETTLING_SECONDS)
     rospy.ServiceProxy("move_base/clear_costmaps", Empty)()
-    robot.step_for(GAP)
+    robot.step_for(SETTLING_SECONDS)
     pose = PoseStamped(pose=pose2_to_msg(goal))
     pose.header.frame_id = frame
     client.send_goal(MoveBaseGoal(pose))
     return client
 
 
-def is_under_way(client: actionlib.SimpleActionClient) -> bool:
+def is_active(client: actionlib.SimpleActionClient) -> bool:
     return client.get_state() in (GoalStatus.PENDING, GoalStatus.ACTIVE)

@@ -1,4 +1,4 @@
-"""The robot and its worlds as Gymnasium environments, without ROS: docs/how_to/train_a_policy.md.
+"""Gymnasium environments of the robot and its worlds, without ROS: docs/how_to/train_a_policy.md.
 
 import gymnasium
 env = gymnasium.make("home_service_gym:PointGoal-v0")
@@ -6,7 +6,7 @@ env = gymnasium.make("home_service_gym:PointGoal-v0")
 
 import gymnasium
 
-# Name, class, and seconds of an episode, at so many control periods a second.
+# Environment id, class, maximum duration of an episode [s], control rate [Hz].
 _ENVIRONMENTS = (
     ("HomeService-v0", "environments:HomeServiceEnv", 120, 10),
     ("PointGoal-v0", "environments:PointGoalEnv", 60, 10),

@@ -1,4 +1,4 @@
-"""What all environments with a task have in common."""
+"""Base class of the environments whose robot, world and noise come from a scenario."""
 
 from collections import OrderedDict
 from dataclasses import replace
@@ -18,31 +18,36 @@ from laboratory.suites import FOLDER
 from planar import SettingsError, Twist2
 from sim_bridge import robot_named
 
-# Playgrounds that an environment keeps built, and control periods a second.
+# Simulated worlds that an environment keeps, and control rate [Hz].
 MAX_KEPT_WORLDS, RATE = 16, 10
-# Odometry tells at most so many times a robot's greatest speed; one that slips or is bumped may be faster.
+# Bound of the observed velocity as a multiple of the maximum speed; wheel slip and collisions may exceed it.
 MAX_SPEED_FACTOR = 2.0
 
 
 def load_scenario(name: str) -> Scenario:
-    """A scenario by its name in scenarios/, or by its file. Raises SettingsError."""
+    """Read a scenario by its name in scenarios/ or its file. Raises SettingsError."""
     path = Path(name)
     scenario = read_scenario(path if path.suffix == ".yaml" else FOLDER / f"{name}.yaml")
     if scenario.faults:
-        raise SettingsError(f"{scenario.file}: happens.faults: environments play no faults")
+        raise SettingsError(f"{scenario.file}: happens.faults: environments do not support faults")
     return scenario
 
 
 class TaskEnv(gymnasium.Env):
-    """A robot of a scenario, in its worlds and with its noise, that has a task.
+    """Environment with the robot, worlds and noise of a scenario, and a task.
 
-    An observation has ``scan`` (m, as the lidar tells, 0 if too near, the greatest range if nothing is in
-    reach), ``velocity`` (m/s and rad/s, of odometry, to ``BUMPED`` times the greatest) and what the task
-    tells. An action is the share, -1 to 1, of the robot's greatest speed and turn rate. An episode ends with
-    the task, or at the first touch.
+    Observations are dictionaries of ``scan`` (ranges [m]: 0 if too close, the maximum range without an echo),
+    ``velocity`` (of odometry [m/s, rad/s], clipped to ``MAX_SPEED_FACTOR`` times the maximum) and the entries
+    of the task. An action is a pair of shares, -1 to 1, of the maximum speed and turn rate. An episode
+    terminates with the task or at the first collision. ``reset(options={"seed": N})`` selects the world of a
+    seed of the scenario; otherwise one is drawn.
 
-    ``people``: so many, the nearest, are told of; ``has_map``: the map around the robot is told, too.
-    ``reset(options={"seed": N})`` takes the world of that seed of the scenario; otherwise one is drawn.
+    Args:
+        scenario: Scenario with robot, worlds, noise and start pose.
+        task: Task with observations and rewards.
+        render_mode: ``rgb_array``, ``human`` or None.
+        people: Number of nearest pedestrians to observe.
+        has_map: Whether the map around the robot is observed.
     """
 
     metadata = {"render_modes": MODES, "render_fps": RATE}
@@ -107,7 +112,7 @@ class TaskEnv(gymnasium.Env):
 
     @property
     def state(self) -> EpisodeState:
-        """What is so now, also what is not observed."""
+        """Current state of the simulation, including what is not observed."""
         assert self._state is not None, "reset comes first"
         return self._state
 
@@ -128,18 +133,16 @@ class TaskEnv(gymnasium.Env):
             self.render()
 
     def _simulation_for(self, seed: int) -> EpisodeSimulation:
-        """That of the world of a seed, built if it is not among the last that were used."""
-        played = self._scenario
-        differs = bool(played.boxes or played.doors or played.people.count)
-        key = seed if differs else played.world.arena_number(seed)
+        """The simulation of a seed's world, from the cache if possible."""
+        scenario = self._scenario
+        depends_on_seed = bool(scenario.boxes or scenario.doors or scenario.people.count)
+        key = seed if depends_on_seed else scenario.world.arena_number(seed)
         simulation = self._simulations.pop(key, None)
         if simulation is None:
-            arena = self._scenario.arena(seed)
+            arena = scenario.arena(seed)
             bodies = (*arena.world.bodies, *self._task.bodies())
             arena = replace(arena, world=replace(arena.world, bodies=bodies))
-            simulation = EpisodeSimulation(
-                arena, self._robot, self._scenario.simulation, self._scenario.start, RATE
-            )
+            simulation = EpisodeSimulation(arena, self._robot, scenario.simulation, scenario.start, RATE)
         self._simulations[key] = simulation
         if len(self._simulations) > MAX_KEPT_WORLDS:
             self._simulations.popitem(last=False)[1].close()
@@ -148,8 +151,8 @@ class TaskEnv(gymnasium.Env):
     def _observation(self) -> Dict[str, np.ndarray]:
         assert self._state is not None
         twist = self._state.twist
-        told = zip((twist.v, twist.omega), self._max_velocity)
-        velocity = [max(-fastest, min(speed, fastest)) for speed, fastest in told]
+        limits = zip((twist.v, twist.omega), self._max_velocity)
+        velocity = [max(-fastest, min(speed, fastest)) for speed, fastest in limits]
         return {
             "scan": self._state.ranges(self._range_max),
             "velocity": np.array(velocity, dtype=np.float32),

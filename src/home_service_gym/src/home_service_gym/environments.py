@@ -1,6 +1,6 @@
-"""The environments with a task, by the names of their classes; docs/how_to/train_a_policy.md describes each.
+"""The environments with a task, described in docs/reference/gymnasium.md.
 
-``told`` is of every TaskEnv: ``render_mode``, ``people``, ``has_map``.
+``options`` are the arguments of every TaskEnv: ``render_mode``, ``people`` and ``has_map``.
 """
 
 from dataclasses import replace
@@ -20,14 +20,14 @@ from planar.maps.places import load_pickup_and_dropoff
 
 
 class PointGoalEnv(TaskEnv):
-    """From anywhere in a home to anywhere; ``lookahead``, m: ``waypoint`` is told that far on the way."""
+    """From a random pose to a random goal; ``lookahead``: distance of the observed ``waypoint`` [m]."""
 
     def __init__(self, scenario: str = "home_errand", lookahead: float = 0.0, **options: Any):
         super().__init__(load_scenario(scenario), point_goal.PointGoalTask(lookahead=lookahead), **options)
 
 
 class HomeServiceEnv(TaskEnv):
-    """The errand of a scenario: to the pick-up zone, wait there, then to the drop-off zone."""
+    """The errand of a scenario: wait in the pick-up zone, then drive to the drop-off zone."""
 
     def __init__(self, scenario: str = "home_errand", pickup_seconds: float = 5.0, **options: Any):
         base = load_scenario(scenario)
@@ -39,7 +39,7 @@ class HomeServiceEnv(TaskEnv):
 
 
 class BarnEnv(TaskEnv):
-    """A Jackal through a field of cylinders; ``folder``: of the benchmark's own worlds."""
+    """A Jackal in a field of cylinders; ``folder``: the worlds of the BARN benchmark."""
 
     def __init__(self, scenario: str = "fields", folder: Optional[str] = None, **options: Any):
         base = load_scenario(scenario)
@@ -51,7 +51,7 @@ class BarnEnv(TaskEnv):
 
 
 class DynabarnEnv(TaskEnv):
-    """A Jackal between cylinders that move; ``folder``: of the benchmark's own worlds."""
+    """A Jackal among moving cylinders; ``folder``: the worlds of the DynaBARN benchmark."""
 
     def __init__(self, scenario: str = "crossings", folder: Optional[str] = None, **options: Any):
         base = load_scenario(scenario)
@@ -63,14 +63,14 @@ class DynabarnEnv(TaskEnv):
 
 
 class FollowEnv(TaskEnv):
-    """After somebody who walks through a home."""
+    """Follow a person who walks through a home."""
 
     def __init__(self, scenario: str = "home_errand", **options: Any):
         super().__init__(load_scenario(scenario), follow.FollowTask(), **options)
 
 
 class ExploreEnv(TaskEnv):
-    """See all of a home."""
+    """Explore a home with the lidar."""
 
     def __init__(self, scenario: str = "home_errand", **options: Any):
         super().__init__(load_scenario(scenario), explore.ExploreTask(), **options)

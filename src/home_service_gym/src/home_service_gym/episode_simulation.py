@@ -1,4 +1,4 @@
-"""A robot in an arena, moved by control periods, put back in well under a millisecond for each episode."""
+"""Simulation of one world, stepped by control periods and reset within a millisecond."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -16,16 +16,22 @@ from sim_bridge.sensors.lidar import LaserProfile
 from sim_bridge.views.true_map import outlines_of, true_map
 from sim_bridge.world import Body, World
 
-# Metres over the floor up to which a robot meets what moves.
+# Height up to which moving bodies count as obstacles [m].
 HEIGHT = 0.5
 
 
 @dataclass(frozen=True, eq=False)
 class EpisodeState:
-    """The end of a control period; ``touched``: names of what the robot bumped into during it.
+    """State at the end of a control period.
 
-    ``base_in_world`` and ``people`` are the truth, ``base_in_odom`` and ``twist`` are what odometry tells.
-    ``people`` (N, 5): x, y, velocity by x and y, m/s, radius of each.
+    Attributes:
+        stamp: Simulated time [s].
+        base_in_world: True pose of the robot.
+        base_in_odom: Pose of the robot by odometry.
+        twist: Velocity by odometry.
+        scan: Latest scan.
+        touched: Names of the bodies the robot collided with during the period.
+        people: (N, 5) true x, y, velocity in x and y [m/s], radius of each pedestrian.
     """
 
     stamp: float
@@ -37,13 +43,21 @@ class EpisodeState:
     people: np.ndarray
 
     def ranges(self, most: float, each: int = 1) -> np.ndarray:
-        """What one beam of ``each`` tells, float32, from 0 to ``most`` m; np.clip takes thrice as long."""
-        told = np.maximum(self.scan.ranges[::each], np.float32(0.0))
-        return np.minimum(told, np.float32(most), out=told)
+        """Return every ``each``-th range as float32, clipped to [0, ``most``] (np.clip is slower)."""
+        ranges = np.maximum(self.scan.ranges[::each], np.float32(0.0))
+        return np.minimum(ranges, np.float32(most), out=ranges)
 
 
 class EpisodeSimulation:
-    """``rate``: control periods a second, in each of which the lidar and odometry tell once."""
+    """Simulation of one robot in one world.
+
+    Args:
+        arena: World to simulate.
+        robot: Robot profile; only its lidar and odometry are simulated.
+        noise: Noise of the sensors and the drive.
+        start: Start pose in the world frame.
+        rate: Control rate [Hz], also that of scans and odometry.
+    """
 
     def __init__(
         self, arena: Arena, robot: RobotProfile, noise: SimulationSettings, start: Pose2, rate: int = 10
@@ -55,14 +69,20 @@ class EpisodeSimulation:
 
     @cached_property
     def traversable_space(self) -> TraversableSpace:
-        """Where there is room, by the truth about the arena as it is at the beginning."""
+        """Traversable space of the true map at the start."""
         static_bodies = [body for body in self.arena.world.bodies if body.is_static]
         world = replace(self.arena.world, bodies=tuple(static_bodies))
         grid = true_map(world, inside=(self.start.x, self.start.y))
         return TraversableSpace(grid, self.start, moving_discs(self.arena.world))
 
     def reset(self, seed: int, start: Pose2, trajectories: Sequence[ScriptedTrajectory] = ()) -> EpisodeState:
-        """Begins an episode with the noise of a seed, and ``courses`` beside those of the world."""
+        """Start an episode.
+
+        Args:
+            seed: Seed of the noise.
+            start: Start pose in the world frame.
+            trajectories: Scripted trajectories in addition to those of the world.
+        """
         self._simulation.scene.trajectory_player.trajectories = (
             *self.arena.world.trajectories,
             *trajectories,
@@ -71,30 +91,37 @@ class EpisodeSimulation:
         return self.step(Twist2())
 
     def step(self, command: Twist2) -> EpisodeState:
-        """Drives for a control period."""
-        seen = self._simulation.step(command)
-        return _state_of(seen, self._simulation.scene.crowd.rows)
+        """Drive for one control period."""
+        step = self._simulation.step(command)
+        return _state_of(step, self._simulation.scene.crowd.rows)
 
     def trajectory_positions(self, trajectories: Sequence[ScriptedTrajectory], stamp: float) -> np.ndarray:
-        """Where what goes its own way then is, (N, 2)."""
+        """Return the positions (N, 2) of scripted trajectories at a time."""
         return np.array([trajectory.at(stamp) for trajectory in trajectories]).reshape(-1, 2)
 
     def close(self) -> None:
         self._simulation.close()
 
 
-def _state_of(seen: StepResult, people: np.ndarray) -> EpisodeState:
-    assert seen.scan is not None, "a lidar tells once a period"
-    told = seen.odometry
-    pose, odom = seen.base_in_world, told.base_in_odom
-    return EpisodeState(seen.stamp, pose, odom, told.twist, seen.scan, seen.contacts, people)
+def _state_of(step: StepResult, people: np.ndarray) -> EpisodeState:
+    assert step.scan is not None, "the lidar measures once each period"
+    odometry = step.odometry
+    return EpisodeState(
+        step.stamp,
+        step.base_in_world,
+        odometry.base_in_odom,
+        odometry.twist,
+        step.scan,
+        step.contacts,
+        people,
+    )
 
 
 def moving_discs(world: World) -> np.ndarray:
-    """What does not keep still, as it begins: x, y and radius of each part of it, (N, 3)."""
-    begins = {trajectory.link: trajectory.at(0.0) for trajectory in world.trajectories}
+    """Return x, y and radius (N, 3) of all moving bodies at the start."""
+    starts = {trajectory.link: trajectory.at(0.0) for trajectory in world.trajectories}
     discs = [
-        (*begins.get(body.name, middle), float(np.hypot(*(outline - middle).T).max()))
+        (*starts.get(body.name, middle), float(np.hypot(*(outline - middle).T).max()))
         for body in (*world.bodies, *map(body_of, world.walkers))
         if not body.is_static
         for middle in [body.pose_in_world[:2, 3].tolist()]
@@ -104,15 +131,15 @@ def moving_discs(world: World) -> np.ndarray:
 
 
 def static_world_of(world: World, body: Body) -> World:
-    """With this body alone, which stands where it is."""
+    """Return a world with only this body, as a static one."""
     return replace(world, bodies=(replace(body, is_kinematic=False),))
 
 
 def with_lidar_only(robot: RobotProfile) -> RobotProfile:
-    """The robot without the sensors that no environment observes, which would cost time."""
+    """Return the robot without sensors that no environment observes, which would cost time."""
     return replace(robot, sensors=(lidar_profile(robot),))
 
 
 def lidar_profile(robot: RobotProfile) -> LaserProfile:
-    """Its first one; every robot that is known by name has one."""
+    """Return the profile of its first lidar; every included robot has one."""
     return next(spec for spec in robot.sensors if isinstance(spec, LaserProfile))

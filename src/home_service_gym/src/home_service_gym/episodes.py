@@ -1,4 +1,4 @@
-"""Episodes played by a policy, told in a line each."""
+"""Episodes of an environment with a policy."""
 
 from pathlib import Path
 from typing import Any, Callable, Dict, List
@@ -14,19 +14,19 @@ from planar.config.yaml_table import parse_table
 from planar.plugins import load_object
 
 Policy = Callable[[Any], Any]
-# Control periods between two pictures of an animation.
+# Control periods between two frames of an animation.
 FRAME_PERIODS = 3
 
 
 def make_environment(name: str, arguments: str) -> gymnasium.Env[Any, Any]:
-    """``arguments``: of its constructor, as a YAML mapping. Raises SettingsError."""
+    """Make an environment; ``arguments`` of its constructor as a YAML mapping. Raises SettingsError."""
     if name not in NAMES:
         raise SettingsError(
             f"no environment named {name!r}{hint(name, NAMES)} (there are {', '.join(NAMES)})"
         )
-    given: Dict[str, Any] = parse_table(arguments, "--arguments").values()
+    parsed: Dict[str, Any] = parse_table(arguments, "--arguments").values()
     try:
-        return gymnasium.make(name, render_mode="rgb_array", **given)
+        return gymnasium.make(name, render_mode="rgb_array", **parsed)
     except PlanarError:
         raise
     except TypeError as error:
@@ -34,7 +34,7 @@ def make_environment(name: str, arguments: str) -> gymnasium.Env[Any, Any]:
 
 
 def load_policy(name: str, env: gymnasium.Env[Any, Any], seed: int) -> Policy:
-    """That of a dotted name, or one that acts by chance. Raises SettingsError."""
+    """Load a policy by its dotted name; an empty name: random actions. Raises SettingsError."""
     if name:
         return load_object(name)
     env.action_space.seed(seed)
@@ -42,14 +42,20 @@ def load_policy(name: str, env: gymnasium.Env[Any, Any], seed: int) -> Policy:
 
 
 class EpisodeRunner:
-    """Of one environment with one policy; ``is_filmed``: for an animation."""
+    """Runs episodes of one environment with one policy.
+
+    Args:
+        env: The environment.
+        policy: Maps an observation to an action.
+        is_recording: Whether frames are recorded for an animation.
+    """
 
     def __init__(self, env: gymnasium.Env[Any, Any], policy: Policy, is_recording: bool):
         self._env, self._policy, self._is_recording = env, policy, is_recording
         self._frames: List[np.ndarray] = []
 
     def run(self, seed: int) -> str:
-        """One episode; how it went."""
+        """Run an episode; return its outcome in one line."""
         observation, _ = self._env.reset(seed=seed)
         total, periods, is_over = 0.0, 0, False
         while not is_over:
@@ -58,11 +64,11 @@ class EpisodeRunner:
             observation, reward, terminated, truncated, info = self._env.step(self._policy(observation))
             total, periods = total + float(reward), periods + 1
             is_over = terminated or truncated
-        return f"{info.get('outcome', 'time is up')} after {periods} steps, return {total:.1f}"
+        return f"{info.get('outcome', 'time limit')} after {periods} steps, return {total:.1f}"
 
     def save(self, path: Path) -> None:
-        """The animation. Raises SettingsError if it cannot be written."""
-        first, *others = [Image.fromarray(picture) for picture in self._frames]
+        """Write the animation. Raises SettingsError if that fails."""
+        first, *others = [Image.fromarray(frame) for frame in self._frames]
         try:
             first.save(path, save_all=True, append_images=others, duration=100 * FRAME_PERIODS, loop=0)
         except (OSError, ValueError) as error:

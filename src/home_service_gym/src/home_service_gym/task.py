@@ -1,4 +1,4 @@
-"""The contract of a task: what a robot is to do, what it is told of that, and what it is worth."""
+"""Contract of an environment's task: observations, rewards and termination."""
 
 import math
 from dataclasses import dataclass, field
@@ -12,13 +12,18 @@ from planar import Pose2
 from sim_bridge.scripted_trajectories import ScriptedTrajectory
 from sim_bridge.world import Body
 
-# What the tasks here have in common: of a metre nearer to the goal, of a control period, of the ends.
+# Reward terms: for each metre of progress to the goal, for each control period, for success and collision.
 PROGRESS_REWARD, PERIOD_REWARD, SUCCESS_REWARD, COLLISION_REWARD = 1.0, -0.01, 10.0, -10.0
 
 
 @dataclass(frozen=True, eq=False)
 class EpisodeStart:
-    """Where the robot starts, and the courses of bodies that the task has brought along."""
+    """Initial state of an episode.
+
+    Attributes:
+        start: Start pose of the robot in the world frame.
+        trajectories: Scripted trajectories of the task's own bodies.
+    """
 
     start: Pose2
     trajectories: Sequence[ScriptedTrajectory] = ()
@@ -26,7 +31,12 @@ class EpisodeStart:
 
 @dataclass(frozen=True)
 class TaskStep:
-    """What a control period was worth; ``outcome``: why the episode ends with it, empty if it does not."""
+    """Reward of a control period.
+
+    Attributes:
+        reward: The reward.
+        outcome: Why the episode terminates; empty if it continues.
+    """
 
     reward: float
     outcome: str = ""
@@ -34,7 +44,13 @@ class TaskStep:
 
 @dataclass(frozen=True, eq=False)
 class Overlay:
-    """For pictures: a ``goal`` and its radius, ``courses`` of what moves, ``known`` cells of the ground."""
+    """What a task adds to rendered images.
+
+    Attributes:
+        goal: Goal pose and its radius [m].
+        trajectories: Scripted trajectories of moving bodies.
+        explored: Explored cells of the map, bool (rows, cols).
+    """
 
     goal: Optional[Tuple[Pose2, float]] = None
     trajectories: Sequence[ScriptedTrajectory] = field(default_factory=tuple)
@@ -42,29 +58,29 @@ class Overlay:
 
 
 class EpisodeTask(Protocol):
-    """Chance comes from ``rng`` alone; the same calls give the same results."""
+    """A task. All random numbers come from ``rng``; equal calls give equal results."""
 
     def bodies(self) -> Sequence[Body]:
-        """What it brings along into every arena."""
+        """Return bodies to add to every world."""
 
     def spaces(self) -> Dict[str, spaces.Space[Any]]:
-        """Of what it tells beside ``scan`` and ``velocity``."""
+        """Return the spaces of its observations, in addition to ``scan`` and ``velocity``."""
 
     def reset(self, simulation: EpisodeSimulation, rng: np.random.Generator) -> EpisodeStart:
-        """A new episode. Raises PlanarError if this arena does not do."""
+        """Start an episode. Raises PlanarError if the world is not suitable."""
 
     def observation(self, state: EpisodeState) -> Dict[str, np.ndarray]:
-        """What it tells; called once at the beginning, and after each ``judge``."""
+        """Return its observations; called once after ``reset`` and after each ``step``."""
 
     def step(self, state: EpisodeState) -> TaskStep:
-        """The control period that ends with this moment; a collision is judged by the environment."""
+        """Rate the control period that ends with this state; the environment handles collisions."""
 
     def overlay(self) -> Overlay:
-        """What pictures show of it."""
+        """Return what rendered images show of the task."""
 
 
 def goal_space() -> spaces.Box:
-    """Distance, m, cosine and sine of the bearing."""
+    """Return the space of a goal: distance [m], cosine and sine of the bearing."""
     low, high = np.array([0.0, -1.0, -1.0], np.float32), np.array([MAX_GOAL_DISTANCE, 1.0, 1.0], np.float32)
     return spaces.Box(low, high, dtype=np.float32)
 
@@ -73,7 +89,7 @@ MAX_GOAL_DISTANCE = 100.0
 
 
 def goal_observation(base: Pose2, goal: Pose2) -> np.ndarray:
-    """A goal as ``goal_space`` has it."""
+    """Return a goal as an element of ``goal_space``."""
     x, y = goal.x - base.x, goal.y - base.y
     bearing = math.atan2(y, x) - base.yaw
     distance = min(math.hypot(x, y), MAX_GOAL_DISTANCE)

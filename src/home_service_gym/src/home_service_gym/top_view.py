@@ -1,4 +1,4 @@
-"""Pictures of an episode from above."""
+"""Top view images of an episode."""
 
 from dataclasses import replace
 from typing import List, Tuple
@@ -10,16 +10,16 @@ from home_service_gym.episode_simulation import EpisodeSimulation, EpisodeState,
 from home_service_gym.task import Overlay
 from sim_bridge.views.true_map import outlines_of
 
-# Pixels of the longer side, and metres around what there is.
+# Length of the longer side [pixels], and margin around the world [m].
 IMAGE_SIZE, MARGIN = 480, 0.5
-# Metres: the height that solids are cut at, the radii of what is drawn as a disc.
+# Metres: height of the cross section, radius of the robot and of scan points.
 HEIGHT, ROBOT, DOT = 0.2, 0.2, 0.03
 FLOOR, UNSEEN, SOLID, MOVING = (255, 255, 255), (205, 205, 205), (70, 70, 70), (210, 120, 30)
 GOAL, BEAMS, BODY, HEADING_COLOUR = (60, 170, 80), (220, 60, 60), (50, 90, 200), (255, 255, 255)
 
 
 class TopView:
-    """Of one playground; what keeps still is drawn once."""
+    """Top view of one simulation; static bodies are drawn once."""
 
     def __init__(self, simulation: EpisodeSimulation):
         self.simulation = simulation
@@ -44,7 +44,7 @@ class TopView:
         }
 
     def draw(self, state: EpisodeState, overlay: Overlay) -> np.ndarray:
-        """(H, W, 3), uint8; y upwards."""
+        """Return the image (H, W, 3), uint8, with y upwards."""
         image = self._static_image.copy()
         if overlay.explored is not None:
             self._hide_unknown(image, overlay.explored)
@@ -59,8 +59,8 @@ class TopView:
         for point in base.transform_points(state.scan.hit_points_in_base()):
             self._disc(pen, (point[0], point[1]), DOT, BEAMS)
         self._disc(pen, (base.x, base.y), ROBOT, BODY)
-        nose = base.transform_points(np.array([[0.0, 0.0], [ROBOT, 0.0]]))
-        pen.line(self._pixels(nose), fill=HEADING_COLOUR, width=2)
+        heading_line = base.transform_points(np.array([[0.0, 0.0], [ROBOT, 0.0]]))
+        pen.line(self._pixels(heading_line), fill=HEADING_COLOUR, width=2)
         return np.asarray(image)
 
     def _pixels(self, points_xy: np.ndarray) -> List[Tuple[float, float]]:
@@ -75,7 +75,7 @@ class TopView:
         pen.ellipse((x - size, y - size, x + size, y + size), fill=colour)
 
     def _hide_unknown(self, image: Image.Image, explored: np.ndarray) -> None:
-        """Greys what has not been seen."""
+        """Paint unexplored cells grey."""
         grid = self.simulation.traversable_space.grid
         side = grid.resolution * self._scale
         size = (round(explored.shape[1] * side), round(explored.shape[0] * side))

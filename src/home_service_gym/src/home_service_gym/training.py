@@ -1,4 +1,4 @@
-"""An evolution strategy (Salimans et al., 2017) for the network of plugin_examples.learned, on CPUs alone."""
+"""Evolution strategy (Salimans et al., 2017) for the network of plugin_examples.learned, on the CPU."""
 
 import math
 from multiprocessing import get_context
@@ -10,16 +10,16 @@ from home_service_gym.environments import PointGoalEnv
 from planar import Scan
 from plugin_examples.learned import LOOKAHEAD, SECTORS, VIEW_RANGE, Policy, PolicyObservation
 
-# Seeds of the homes that are trained in, control periods of an episode, spread and step of the weights.
-HOMES = tuple(range(12))
+# Seeds of the training homes; control periods of an episode, standard deviation and step size of the weights.
+HOME_SEEDS = tuple(range(12))
 MAX_PERIODS, SPREAD, STEP = 300, 0.05, 0.05
-# Shares of what the robot could do that a planner lets it, 0.6 m/s and 1.8 rad/s of a TurtleBot.
+# Limits of the planner (0.6 m/s, 1.8 rad/s) as shares of those of the TurtleBot.
 LIMITS = np.array((0.6 / 0.7, 1.8 / math.pi))
 _env: List[PointGoalEnv] = []
 
 
 def sector_ranges(scan: Scan) -> np.ndarray:
-    """How far it is in each sector to what the scan has met, (SECTORS,), m."""
+    """Return the distance to the nearest scan point in each sector, (SECTORS,) [m]."""
     points = scan.hit_points_in_base()
     turns = np.arctan2(points[:, 1], points[:, 0]) / (2.0 * math.pi) + 0.5
     clear = np.full(SECTORS, VIEW_RANGE)
@@ -28,8 +28,8 @@ def sector_ranges(scan: Scan) -> np.ndarray:
 
 
 def run_episode(env: PointGoalEnv, policy: Policy, seed: int) -> Tuple[float, str]:
-    """An episode in one of the homes: its return, and how it ended."""
-    observation, _ = env.reset(seed=seed, options={"seed": HOMES[seed % len(HOMES)]})
+    """Run an episode in one of the homes; return the sum of rewards and the outcome."""
+    observation, _ = env.reset(seed=seed, options={"seed": HOME_SEEDS[seed % len(HOME_SEEDS)]})
     total = 0.0
     for _ in range(MAX_PERIODS):
         x, y = observation["waypoint"].tolist()
@@ -43,7 +43,7 @@ def run_episode(env: PointGoalEnv, policy: Policy, seed: int) -> Tuple[float, st
 
 
 def _run_episodes(task: Tuple[np.ndarray, Tuple[int, ...]]) -> Tuple[float, int]:
-    """Mean return of some weights over episodes, and how many succeeded; in a process of a pool."""
+    """Mean return of weights over episodes, and the number of successes; runs in a pool process."""
     weights, seeds = task
     if not _env:
         _env.append(PointGoalEnv("homes", lookahead=LOOKAHEAD))
@@ -54,9 +54,17 @@ def _run_episodes(task: Tuple[np.ndarray, Tuple[int, ...]]) -> Tuple[float, int]
 def evolve(
     generations: int, pairs: int, episodes: int, workers: int, seed: int
 ) -> Iterator[Tuple[int, float, float, np.ndarray]]:
-    """After each generation its number, mean return, share of successes, and the weights then.
+    """Train the weights.
 
-    Each generation tries ``pairs`` of opposite changes on the same ``episodes``.
+    Args:
+        generations: Number of generations.
+        pairs: Antithetic pairs of weight changes in each generation.
+        episodes: Episodes for each candidate, the same in a generation.
+        workers: Number of processes.
+        seed: Seed of all random numbers.
+
+    Yields:
+        Number of the generation, mean return, share of successes and weights after it.
     """
     rng = np.random.default_rng(seed)
     weights = np.zeros(Policy.WEIGHT_COUNT)
@@ -65,8 +73,8 @@ def evolve(
         for generation in range(generations):
             seeds = tuple(rng.integers(2**31, size=episodes).tolist())
             changes = rng.normal(0.0, 1.0, (pairs, Policy.WEIGHT_COUNT))
-            tried = np.concatenate((weights + SPREAD * changes, weights - SPREAD * changes))
-            results = pool.map(_run_episodes, [(one, seeds) for one in tried], chunksize=1)
+            candidates = np.concatenate((weights + SPREAD * changes, weights - SPREAD * changes))
+            results = pool.map(_run_episodes, [(one, seeds) for one in candidates], chunksize=1)
             returns = np.array([total for total, _ in results])
             ranks = np.argsort(np.argsort(returns)) / (len(returns) - 1.0) - 0.5
             weights = weights + STEP * (ranks[:pairs] - ranks[pairs:]) @ changes / pairs

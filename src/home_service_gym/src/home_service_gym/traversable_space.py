@@ -1,4 +1,4 @@
-"""Where a robot can stand and drive in an arena, and how far it is from there to a goal."""
+"""Where a robot can stand and drive in a world, and path lengths to goals."""
 
 import math
 from collections import OrderedDict
@@ -12,20 +12,23 @@ from explorer_lite.travel import travel_distances
 from planar import FREE, OccupancyGrid, Pose2
 from planar.geometry.distance_field import distance_field
 
-# Metres from a robot's middle to what is solid: where it is put, and on its ways.
+# Minimum distance from the robot's centre to obstacles [m]: at sampled poses, and on paths.
 STANDING_CLEARANCE, PASSAGE_CLEARANCE = 0.4, 0.35
 WAYPOINT_COUNT = 16
 MAX_KEPT_GOALS = 4
-NOBODY = np.empty((0, 3))
+NO_BODIES = np.empty((0, 3))
 
 
 class TraversableSpace:
-    """``grid``: free is what can be reached from ``start``; ``crowd`` (N, 3): x, y and radius of what moves.
+    """Cells a robot can traverse, and shortest paths over them.
 
-    Nobody is put where something that moves begins.
+    Args:
+        grid: True map of the world.
+        start: Pose in the world frame from which sampled poses must be reachable.
+        moving_bodies: (N, 3) x, y and radius of moving bodies at the start, which sampled poses avoid.
     """
 
-    def __init__(self, grid: OccupancyGrid, start: Pose2, crowd: np.ndarray = NOBODY):
+    def __init__(self, grid: OccupancyGrid, start: Pose2, moving_bodies: np.ndarray = NO_BODIES):
         self.grid = grid
         self._map_in_grid = grid.origin.inverse()
         self._clearance = distance_field(grid.cells != FREE, grid.resolution)
@@ -34,20 +37,23 @@ class TraversableSpace:
         self._waypoint_distances: Dict[int, np.ndarray] = {}
         self._paths: Dict[Tuple[int, int], np.ndarray] = {}
         standing_cells = np.argwhere((self._clearance > STANDING_CLEARANCE) & np.isfinite(from_start))
-        gaps = cdist(grid.points_of(standing_cells), crowd[:, :2]) - crowd[:, 2]
+        gaps = cdist(grid.points_of(standing_cells), moving_bodies[:, :2]) - moving_bodies[:, 2]
         self._standing_cells = standing_cells[(gaps > STANDING_CLEARANCE).all(axis=1)]
 
     def sample_pose(
-        self, rng: np.random.Generator, distances: Optional[np.ndarray] = None, least: float = 0.0
+        self, rng: np.random.Generator, distances: Optional[np.ndarray] = None, min_length: float = 0.0
     ) -> Pose2:
-        """Anywhere with room, turned anyhow; of ``distances`` to a goal (see ``distances_to``) at least one.
+        """Sample a random free pose.
 
-        If nowhere is that far from the goal, the place that comes nearest to it.
+        Args:
+            rng: Source of random numbers.
+            distances: Path lengths to a goal, as of ``distances_to``.
+            min_length: Minimum path length to that goal [m]; the farthest pose if none is that far.
         """
         cells = self._standing_cells
         if distances is not None:
             path_lengths = distances[cells[:, 0], cells[:, 1]]
-            far = np.isfinite(path_lengths) & (path_lengths >= least)
+            far = np.isfinite(path_lengths) & (path_lengths >= min_length)
             cells = (
                 cells[far]
                 if far.any()
@@ -58,12 +64,12 @@ class TraversableSpace:
 
     @cached_property
     def waypoints(self) -> Tuple[Pose2, ...]:
-        """Some places with room, the same each time; ways to them are looked up."""
+        """Fixed random poses; paths between them are cached."""
         rng = np.random.default_rng(0)
         return tuple(self.sample_pose(rng) for _ in range(WAYPOINT_COUNT))
 
     def path_between(self, start: int, goal: int) -> np.ndarray:
-        """The points (N, 2) of the way from one station to another."""
+        """Return the points (N, 2) of the shortest path between two waypoints, by their indices."""
         if goal not in self._waypoint_distances:
             self._waypoint_distances[goal] = self.distances_to(self.waypoints[goal])
         if (start, goal) not in self._paths:
@@ -71,9 +77,9 @@ class TraversableSpace:
         return self._paths[start, goal]
 
     def distances_to(self, goal: Pose2) -> np.ndarray:
-        """Metres of way to a goal from each cell, float32 (rows, cols), inf where there is none; read only.
+        """Return path lengths to a goal [m], float32 (rows, cols), inf without a path; read-only.
 
-        Those to the last goals are kept: many episodes have the same.
+        Those of the last goals are cached, because many episodes have the same goal.
         """
         distances = self._goal_distances.pop(goal, None)
         if distances is None:
@@ -85,13 +91,13 @@ class TraversableSpace:
         return distances
 
     def distance_at(self, distances: np.ndarray, place: Pose2) -> float:
-        """The least of ``distances`` in the cell of a place and around it."""
+        """Return the smallest of ``distances`` in the cell of a pose and its neighbours."""
         row, col = self._cell_of(place)
         window = distances[max(row - 1, 0) : max(row + 2, 0), max(col - 1, 0) : max(col + 2, 0)]
         return float(window.min()) if window.size else math.inf
 
     def path(self, distances: np.ndarray, start: Pose2, most: int = 1_000_000) -> np.ndarray:
-        """The points (N, 2) of a way to the goal that ``distances`` lead to, or the first ``most`` of it."""
+        """Return the first ``most`` points (N, 2) of the path that descends ``distances`` from ``start``."""
         cells = [self._cell_of(start)]
         while distances[cells[-1]] > 0.0 and len(cells) < most:
             row, col = cells[-1]
@@ -105,7 +111,7 @@ class TraversableSpace:
         return self.grid.points_of(np.array(cells))
 
     def _cell_of(self, place: Pose2) -> Tuple[int, int]:
-        """Row and column: each period asks for one, for which the grid's arrays would take too long."""
+        """Row and column of a pose; faster than the grid's array functions."""
         in_grid = self._map_in_grid @ place
         return math.floor(in_grid.y / self.grid.resolution), math.floor(in_grid.x / self.grid.resolution)
 

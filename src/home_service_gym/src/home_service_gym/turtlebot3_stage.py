@@ -1,4 +1,4 @@
-"""The stages of ROBOTIS' machine-learning tutorial, as its DQN knows them (turtlebot3_machine_learning)."""
+"""The stages of ROBOTIS' machine-learning tutorial (turtlebot3_machine_learning)."""
 
 import math
 from dataclasses import dataclass, replace
@@ -19,20 +19,20 @@ from sim_bridge import SimulationSettings, load_world, robot_named
 from sim_bridge.scripted_trajectories import ScriptedTrajectory
 
 FOLDER = ROOT / "src/compat/turtlebot3_gazebo"
-# Control periods a second, beams that the network sees, and how fast the robot is driven, m/s and rad/s.
+# Control rate [Hz], observed beams, speed [m/s] and maximum turn rate [rad/s].
 RATE, BEAMS, SPEED, TURN = 5, 24, 0.15, 1.5
-# Metres: a beam shorter than this is a collision, the goal is reached, something is too near for comfort.
+# Metres: range that counts as a collision, radius of the goal, range below which a penalty applies.
 COLLISION_DISTANCE, GOAL_RADIUS, NEAR_DISTANCE = 0.13, 0.2, 0.5
-# Where goals are of the first three stages, m, and of the fourth.
+# Goals of the first three stages [m], and of the fourth.
 HALF, TENTHS, POST_CLEARANCE = 1.2, 10.0, 0.4
 POSTS_XY = ((0.0, 0.0), (0.6, 0.6), (0.6, -0.6), (-0.6, 0.6), (-0.6, -0.6))
 GOALS_XY = (
     *((0.6, 0.0), (1.9, -0.5), (0.5, -1.9), (0.2, 1.5), (-0.8, -0.9), (-1.0, 1.0), (-1.9, 1.1)),
     *((0.5, -1.5), (2.0, 1.5), (0.5, 1.8), (0.0, -1.0), (-0.1, 1.6), (-2.0, -0.8)),
 )
-# Seconds in which the posts of stage 3 go round once, and corners that their circles are told by.
+# Period of the circling posts of stage 3 [s], and corners of their circles.
 CIRCLE_SECONDS, CORNERS = 40.0, 48
-# The two of stage 4: s, and m from where they stand.
+# Keyframes of the walkers of stage 4: time [s], displacement [m].
 WALKER_KEYFRAMES = {
     "obstacle_1": (
         *((0, 0.0, 0.0), (10, -0.5, -1.0), (50, -3.5, -1.0), (70, -3.7, -3.0), (90, -3.5, -1.0)),
@@ -48,7 +48,7 @@ WALKER_KEYFRAMES = {
 
 @dataclass(frozen=True)
 class StageRewards:
-    """What a goal, a collision, and being near to something for a period are worth."""
+    """Rewards for reaching a goal, for a collision, and for a period close to an obstacle."""
 
     goal: float
     collision: float
@@ -60,11 +60,15 @@ STARTS = {1: Pose2(), 2: Pose2(), 3: Pose2(), 4: Pose2(-0.7, 0.0)}
 
 
 class TurtleBot3StageEnv(gymnasium.Env):
-    """``stage`` 1: an empty square, 2: four posts, 3: they go round, 4: walls and two that walk.
+    """A stage of the tutorial with its observations, actions and rewards.
 
-    The observation is that of the tutorial: 24 beams (m), bearing of the goal (rad), its distance (m), and
-    but for stage 1 the shortest beam and its number. The five actions turn left to right while the robot
-    drives. A goal that is reached is followed by another; the episode ends with a collision.
+    The observation has 24 ranges [m], bearing [rad] and distance [m] of the goal and, except in stage 1, the
+    shortest range and its index. The five actions turn from left to right at constant speed. A reached goal
+    is replaced by another; the episode terminates with a collision.
+
+    Args:
+        stage: 1: an empty square, 2: four posts, 3: circling posts, 4: walls and two walkers.
+        render_mode: ``rgb_array``, ``human`` or None.
     """
 
     metadata = {"render_modes": MODES, "render_fps": RATE}
@@ -128,7 +132,7 @@ class TurtleBot3StageEnv(gymnasium.Env):
             self.render()
 
     def _reward(self, observation: np.ndarray, action: int) -> float:
-        """The more the action turns to the goal, and the farther that still is, the better."""
+        """Reward for turning towards the goal, scaled by its distance, as in the tutorial."""
         angle = -math.pi / 4.0 + float(observation[BEAMS]) + math.pi / 8.0 * action + math.pi / 2.0
         turned = (0.25 + 0.5 * angle % (2.0 * math.pi) / math.pi) % 1.0
         facing = 1.0 - 4.0 * abs(0.5 - turned)
@@ -142,7 +146,7 @@ class TurtleBot3StageEnv(gymnasium.Env):
         self._first_distance = max(self._state.base_in_world.distance_to(goal), GOAL_RADIUS)
 
     def _next_goal(self) -> Pose2:
-        """Another one, off the posts."""
+        """A different goal, away from the posts."""
         while True:
             if self._stage == 4:
                 goal = Pose2(*GOALS_XY[self.np_random.integers(len(GOALS_XY))])
@@ -159,15 +163,15 @@ class TurtleBot3StageEnv(gymnasium.Env):
         base, scan = self._state.base_in_world, self._state.scan
         beams = self._state.ranges(3.5, each=len(scan.ranges) // BEAMS)
         x, y = self._goal.x - base.x, self._goal.y - base.y
-        told = [wrap(math.atan2(y, x) - base.yaw), min(math.hypot(x, y), 10.0)]
+        goal_values = [wrap(math.atan2(y, x) - base.yaw), min(math.hypot(x, y), 10.0)]
         if self._stage > 1:
-            told += [float(beams.min()), float(beams.argmin())]
-        return np.concatenate((beams, np.array(told, dtype=np.float32)))
+            goal_values += [float(beams.min()), float(beams.argmin())]
+        return np.concatenate((beams, np.array(goal_values, dtype=np.float32)))
 
 
 @lru_cache(maxsize=4)
 def arena_of(stage: int) -> Arena:
-    """The world of a stage, with what moves in it."""
+    """Return the world of a stage with its moving bodies."""
     world = load_world(FOLDER / f"worlds/turtlebot3_stage_{stage}.world", [FOLDER / "models"])
     trajectories = _trajectories_of(stage, {body.name: body.pose_in_world[:2, 3] for body in world.bodies})
     moving = {trajectory.link for trajectory in trajectories}

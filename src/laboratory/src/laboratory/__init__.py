@@ -1,1 +1,1 @@
-"""Scenarios as data, thousands of missions over all cores, statistics of them, and a page to look at."""
+"""Scenario files, campaigns of thousands of runs on all cores, their statistics and an HTML report."""

@@ -1,7 +1,4 @@
-"""What a generator of worlds of somebody's own has to do: ``python3 -m laboratory.check NAME``.
-
-Each check is given a source of worlds.
-"""
+"""Contract checks of a custom world generator: ``python3 -m laboratory.check NAME``."""
 
 import sys
 from typing import Any, Tuple
@@ -19,7 +16,7 @@ SEEDS = range(5)
 
 
 def gives_a_world_for_each_seed(source: WorldSource) -> None:
-    """It gives a world for each seed, in which a robot can be."""
+    """It generates a world with a floor for each seed."""
     for seed in SEEDS:
         arena = source.arena(seed)
         expect(bool(arena.world.bodies), f"seed {seed}: a world without a floor")
@@ -27,31 +24,34 @@ def gives_a_world_for_each_seed(source: WorldSource) -> None:
 
 
 def is_deterministic(source: WorldSource) -> None:
-    """All chance comes from the seed: the same one gives the same world."""
+    """It is deterministic: the same seed gives the same world."""
     for seed in SEEDS:
         first, _, second = source.arena(seed), source.arena(seed + 1), source.arena(seed)
-        expect(_fingerprint(first) == _fingerprint(second), f"seed {seed}: another world the second time")
+        expect(
+            _fingerprint(first) == _fingerprint(second),
+            f"seed {seed}: the second call returned a different world",
+        )
 
 
 def places_are_free(source: WorldSource) -> None:
-    """Its places are on free floor of the map that the robot is given."""
+    """Its places are on free cells of the map."""
     for seed in SEEDS:
         arena = source.arena(seed)
         if arena.grid is not None:
             for place in arena.places:
                 is_free = arena.grid.value_at(place.pose.x, place.pose.y) == FREE
-                expect(is_free, f"seed {seed}: {place.name} is not on free floor")
+                expect(is_free, f"seed {seed}: {place.name} is not on a free cell")
 
 
 def _fingerprint(arena: Arena) -> Tuple[Any, ...]:
-    """What two arenas that are the same have in common."""
+    """All that must be equal in two equal arenas."""
     cells = b"" if arena.grid is None else arena.grid.cells.tobytes()
     bodies = [(body.name, np.asarray(body.pose_in_world).tobytes()) for body in arena.world.bodies]
     return bodies, cells, arena.title, arena.reference_length, arena.places, _first_scans(arena)
 
 
 def _first_scans(arena: Arena) -> bytes:
-    """What a robot that stands at its origin sees in a fifth of a second."""
+    """The scans of a robot at the origin in the first 0.2 s."""
     simulation = Simulation(arena.world)
     try:
         scans = [scan for _ in range(40) for scan in simulation.step().scans]
@@ -61,11 +61,11 @@ def _first_scans(arena: Arena) -> bytes:
 
 
 def _load_source(name: str) -> CustomWorlds:
-    """With the values that its fields have by themselves. Raises PluginError if one has none."""
+    """Load a generator with the default values of its fields. Raises PluginError if one has no default."""
     try:
         return CustomWorlds(name, load_generator(name)())
     except TypeError as error:
-        raise PluginError(f"{name} cannot be tried: {error}") from None
+        raise PluginError(f"{name} cannot be checked without arguments: {error}") from None
 
 
 CHECKS = (gives_a_world_for_each_seed, is_deterministic, places_are_free)

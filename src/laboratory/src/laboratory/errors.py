@@ -1,11 +1,11 @@
-"""What can be wrong with experiments."""
+"""Errors of campaigns and their results."""
 
 from planar import PlanarError
 
 
 class ResultsError(PlanarError):
-    """The file of results cannot be used; the text names it."""
+    """The file of results cannot be read or written; the text names it."""
 
 
 class WorkersError(PlanarError):
-    """Nobody is there to play, or those who are have other software."""
+    """No worker is available, or a worker has another version of the software."""

@@ -1,4 +1,4 @@
-"""Suites evaluated: played as far as they have not been yet, and told of."""
+"""Evaluation of suites: execute the runs that have no stored result, then read all results."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,7 +17,13 @@ from planar import SettingsError
 
 @dataclass(frozen=True, eq=False)
 class EvaluatedScenario:
-    """A scenario and its results of this version, of the seeds asked for."""
+    """A scenario with its stored results.
+
+    Attributes:
+        scenario: The scenario.
+        digest: Its digest, the key of its results.
+        results: Results of one version of the software, for the requested seeds.
+    """
 
     scenario: Scenario
     digest: str
@@ -29,23 +35,29 @@ class EvaluatedScenario:
 
 
 class Evaluation:
-    """Scenarios with their seeds, over one file of results."""
+    """Scenarios and their seeds, evaluated with one file of results.
+
+    Args:
+        scenarios: Scenarios to evaluate.
+        seeds: Seeds of all scenarios; None: the seeds of each scenario file.
+        results: SQLite file of results.
+    """
 
     def __init__(self, scenarios: Sequence[Scenario], seeds: Optional[Tuple[int, ...]], results: Path):
         self._scenarios = [(scenario, scenario.digest(), seeds or scenario.seeds) for scenario in scenarios]
         self._store = ResultStore(results)
 
     def run(self, workers: Workers) -> None:
-        """Plays what is not in the file yet. Raises ResultsError, WorkersError."""
+        """Execute all runs without a stored result. Raises ResultsError, WorkersError."""
         runs, total = self.pending_runs()
-        print(f"version {version()}: {total} missions, {total - len(runs)} of them played before")
+        print(f"version {version()}: {total} results requested, {total - len(runs)} already stored")
         if not runs:
             return
         with workers.client() as client, CampaignProgress(len(runs)) as progress:
             self.run_on(client, progress.count)
 
     def run_on(self, client: Any, on_result: Callable[[bool], None] = lambda is_success: None) -> None:
-        """The same by workers that are there; ``heard``: told of each run whether it succeeded."""
+        """Execute them on existing workers; ``on_result`` is called with the success of each run."""
         runs, _ = self.pending_runs()
         campaign = Campaign(
             client, self._store, lambda _, run: on_result(run.is_success), worker_count(client)
@@ -53,7 +65,7 @@ class Evaluation:
         campaign.run(runs)
 
     def pending_runs(self) -> Tuple[List[ScenarioRun], int]:
-        """Those that have not been played, and how many there are in all."""
+        """Return the runs without a stored result, and the total number of runs."""
         completed = self._store.completed(version())
         runs = {
             (digest, seed): ScenarioRun(scenario, seed, digest)
@@ -63,18 +75,18 @@ class Evaluation:
         }
         return list(runs.values()), sum(len(seeds) for _, _, seeds in self._scenarios)
 
-    def version_with_prefix(self, beginning: str) -> str:
-        """The latest version in the file that begins so. Raises SettingsError."""
+    def version_with_prefix(self, prefix: str) -> str:
+        """Return the latest stored version with this prefix. Raises SettingsError if there is none."""
         versions = self._store.versions()
-        matching = [each for each in versions if each.startswith(beginning)]
+        matching = [each for each in versions if each.startswith(prefix)]
         if not matching:
             raise SettingsError(
-                f"--against: no results of {beginning}, but of {', '.join(versions) or 'none'}"
+                f"--against: no results of version {prefix}; stored versions: {', '.join(versions) or 'none'}"
             )
         return matching[-1]
 
     def evaluated(self, of_version: str = "") -> List[EvaluatedScenario]:
-        """What there is in the file, of this or another version."""
+        """Return the stored results of all scenarios, of this or of another version."""
         matching = []
         for scenario, digest, seeds in self._scenarios:
             selected = set(seeds)

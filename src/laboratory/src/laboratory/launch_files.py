@@ -1,4 +1,4 @@
-"""What the nodes are told of a scenario, as files: what in one process are values."""
+"""Files and launch arguments that describe a scenario to the ROS nodes."""
 
 import dataclasses
 import math
@@ -13,14 +13,23 @@ from sim_bridge.faults import Fault
 
 
 def write_launch_files(scenario: Scenario, seed: int, folder: Path) -> Dict[str, Any]:
-    """Writes them into ``folder``; returns the arguments of scenario.launch.
+    """Write the files of a scenario.
 
-    Raises PlanarError if the nodes cannot play it.
+    Args:
+        scenario: The scenario.
+        seed: Seed of the run.
+        folder: Folder for the files.
+
+    Returns:
+        The arguments of scenario.launch.
+
+    Raises:
+        PlanarError: The scenario cannot be run over ROS.
     """
     arena = scenario.arena(seed)
     files = scenario.task.launch_files(arena, seed, folder)
     if arena.grid is None:
-        raise SettingsError(f"{scenario.file}: nodes can only play in a world with a map")
+        raise SettingsError(f"{scenario.file}: a run over ROS needs a world with a map")
     arguments: Dict[str, Any] = {
         "world_file": scenario.file.resolve(),
         "seed": seed,
@@ -30,14 +39,14 @@ def write_launch_files(scenario: Scenario, seed: int, folder: Path) -> Dict[str,
         "parameters_file": write_yaml(folder / "parameters.yaml", node_parameters(scenario)),
         **files,
     }
-    arguments.update(_driver(scenario.planner))
+    arguments.update(_planner_arguments(scenario.planner))
     if scenario.faults:
         faults = {"faults": [fault_table(fault) for fault in scenario.faults]}
         arguments["faults_file"] = write_yaml(folder / "faults.yaml", faults)
     return arguments
 
 
-def _driver(planner: str) -> Dict[str, str]:
+def _planner_arguments(planner: str) -> Dict[str, str]:
     if planner != OFFICIAL:
         return {"planner": planner} if planner else {}
     from laboratory.ros import official_move_base
@@ -46,7 +55,7 @@ def _driver(planner: str) -> Dict[str, str]:
 
 
 def node_parameters(scenario: Scenario) -> Dict[str, Any]:
-    """By node, its parameters that are not as usual."""
+    """Return the parameters of each node that differ from their defaults."""
     start = scenario.start
     initial = {f"initial_pose_{key}": value for key, value in zip("xya", (start.x, start.y, start.yaw))}
     simulation = dataclasses.asdict(scenario.simulation)
@@ -58,12 +67,12 @@ def node_parameters(scenario: Scenario) -> Dict[str, Any]:
 
 
 def fault_table(fault: Fault) -> Dict[str, Any]:
-    """As a list of faults has it."""
+    """Return a fault as an entry of a faults file."""
     table = dataclasses.asdict(fault)
     return {key: value for key, value in table.items() if value != math.inf}
 
 
 def write_yaml(path: Path, content: Any) -> Path:
-    """Returns the path."""
+    """Write ``content`` as YAML; return the path."""
     write_atomically(path, yaml.safe_dump(content, sort_keys=False).encode("utf-8"))
     return path

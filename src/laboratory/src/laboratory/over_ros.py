@@ -1,4 +1,4 @@
-"""One scenario played by the graph of nodes, in processes of their own."""
+"""Run a scenario as a graph of ROS nodes in child processes."""
 
 import json
 import subprocess
@@ -20,12 +20,12 @@ from supervision.guard import guarded
 if TYPE_CHECKING:
     from laboratory.scenario.scenario import Scenario
 
-# Wall seconds that a run may take for each simulated one, to come up, and to end.
+# Maximum wall-clock time for each simulated second, for the start and for the shutdown of the nodes [s].
 WALL_SECONDS_PER_SIMULATED, STARTUP_SECONDS, SHUTDOWN_SECONDS = 4.0, 120.0, 60.0
 
 
 def run_over_ros(scenario: "Scenario", arena: Arena, seed: int) -> RunTrace:
-    """As the task's own ``play``. Raises SettingsError if the graph leaves no result."""
+    """Do what ``Task.run`` does, over ROS. Raises SettingsError if the nodes leave no result."""
     timeout = scenario.seconds * WALL_SECONDS_PER_SIMULATED + STARTUP_SECONDS
     with tempfile.TemporaryDirectory(prefix="over-ros-") as parent:
         command = [sys.executable, "-m", "laboratory", "play", str(scenario.file), "--over", "ros"]
@@ -41,7 +41,7 @@ def run_over_ros(scenario: "Scenario", arena: Arena, seed: int) -> RunTrace:
 
 
 def _run_command(command: List[str], timeout: float) -> List[str]:
-    """Lines that it has printed, however it ended."""
+    """Run a command; return the lines it printed, whatever its exit code."""
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     try:
         return process.communicate(timeout=timeout)[0].splitlines()
@@ -51,12 +51,12 @@ def _run_command(command: List[str], timeout: float) -> List[str]:
 
 
 def _read_trace(folder: Path, seconds: float) -> RunTrace:
-    """What a run folder tells."""
+    """Read the trace of a run from its run folder."""
     result = json.loads(read_text(folder / "result.json"))
     truth, estimate = (_read_trajectory(folder / f"trajectory_{name}.tum") for name in ("true", "estimated"))
     if len(truth) < 2:
         raise SettingsError(f"over ROS: {result['reason']}")
-    # What nodes take to end, which depends on the machine, is none of the run.
+    # Poses after the end of the mission depend on how fast the machine shuts the nodes down.
     end = truth[0, 0] + result.get("simulated_seconds", np.inf)
     truth, estimate = (poses[poses[:, 0] <= end] for poses in (truth, estimate))
     collisions = result.get("collisions", ())
@@ -74,7 +74,7 @@ def _outcome(result: Mapping[str, Any], collisions: Any, seconds: float) -> str:
 
 
 def _errors(truth: np.ndarray, estimate: np.ndarray) -> np.ndarray:
-    """Distances (M,) between estimated places and the true ones at their stamps."""
+    """Distances (M,) between estimated and true positions at the stamps of the estimates."""
     true_xy = [np.interp(estimate[:, 0], truth[:, 0], truth[:, axis]) for axis in (1, 2)]
     errors: np.ndarray = np.hypot(estimate[:, 1] - true_xy[0], estimate[:, 2] - true_xy[1])
     return errors

@@ -1,4 +1,4 @@
-"""What came of suites, in the terminal, and whether that will do."""
+"""Text report of an evaluation, and its checks against requirements and earlier versions."""
 
 from typing import Dict, List, Sequence
 
@@ -9,26 +9,25 @@ from laboratory.statistics.requirement import Requirement
 
 
 def summary_lines(evaluated: Sequence[EvaluatedScenario]) -> List[str]:
-    """The figures of each scenario, and how its planners compare with the first of them."""
+    """Return the figures of each scenario, and the comparison of its planners with the first of them."""
     lines: List[str] = []
     first: Dict[str, EvaluatedScenario] = {}
     for each in evaluated:
-        text = each.summary
-        outcomes = ", ".join(f"{number} {name}" for name, number in text.outcomes.items() if number)
-        lines.append(f"{each.scenario.label}: {text.runs} runs: {outcomes or 'none played'}")
-        for name, estimate in text.figures.items():
-            if text.runs and (name not in text.outcomes or name == "success"):
+        summary = each.summary
+        outcomes = ", ".join(f"{number} {name}" for name, number in summary.outcomes.items() if number)
+        lines.append(f"{each.scenario.label}: {summary.runs} runs: {outcomes or 'none completed'}")
+        for name, estimate in summary.figures.items():
+            if summary.runs and (name not in summary.outcomes or name == "success"):
                 lines.append(f"  {name:<12} {estimate}")
-        rival = first.setdefault(each.scenario.name, each)
-        if rival is not each:
-            lines.append(
-                f"  beside {rival.scenario.label}: {comparison_text(compare(rival.results, each.results))}"
-            )
+        baseline = first.setdefault(each.scenario.name, each)
+        if baseline is not each:
+            comparison = comparison_text(compare(baseline.results, each.results))
+            lines.append(f"  compared with {baseline.scenario.label}: {comparison}")
     return lines
 
 
 def regressions(evaluated: Sequence[EvaluatedScenario], earlier: Sequence[EvaluatedScenario]) -> List[str]:
-    """A line for each scenario that has become worse, in success or in time, on the same seeds."""
+    """Return a line for each scenario that is significantly worse in success or time on the same seeds."""
     lines = []
     for now, before in zip(evaluated, earlier):
         comparison = compare(before.results, now.results)
@@ -38,9 +37,9 @@ def regressions(evaluated: Sequence[EvaluatedScenario], earlier: Sequence[Evalua
 
 
 def violated_requirements(evaluated: Sequence[EvaluatedScenario], rules: Sequence[Requirement]) -> List[str]:
-    """A line for each rule that does not hold of a scenario."""
+    """Return a line for each requirement that a scenario does not satisfy."""
     return [
-        f"{each.scenario.label}: not {rule}"
+        f"{each.scenario.label}: requirement not met: {rule}"
         for each in evaluated
         for rule in rules
         if not rule.is_met(each.summary.figures)

@@ -1,4 +1,4 @@
-"""One scenario played with one seed, in this process."""
+"""Run a scenario with one seed."""
 
 import time
 
@@ -10,9 +10,16 @@ from planar import PlanarError
 
 
 def run_scenario(scenario: Scenario, seed: int, digest: str = "") -> RunResult:
-    """Plays it; the same result for the same scenario, seed and version, but for the wall-clock time.
+    """Run a scenario with one seed.
 
-    ``digest``: of the scenario, if it is known. What makes a run impossible is its result: an error.
+    Args:
+        scenario: Scenario to run.
+        seed: Seed of all random numbers of the run.
+        digest: ``scenario.digest()`` if already known.
+
+    Returns:
+        The result, equal for equal scenario, seed and software version except for ``wall_seconds``. A run
+        that cannot be executed has the outcome ``error`` and the text of the exception as its reason.
     """
     key = RunKey(digest or scenario.digest(), seed, version())
     start = time.perf_counter()

@@ -1,4 +1,4 @@
-"""Suites: scenarios that are played together, as they are named on the command line."""
+"""Suites: scenarios that are evaluated together, as named on the command line."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -18,10 +18,18 @@ FOLDER = ROOT / "scenarios"
 def load_suites(
     suites: Sequence[str], planners: Sequence[str] = (), is_over_ros: bool = False
 ) -> Tuple[List[Scenario], List[str]]:
-    """The scenarios of files, of folders of them, or by their names in ``scenarios/``; with each planner.
+    """Load scenarios.
 
-    Returns them, and what is wrong with those that cannot be played. Raises SettingsError for a suite or a
-    planner that is not there.
+    Args:
+        suites: Scenario files, folders of them, or names in ``scenarios/``.
+        planners: Local planners to run each scenario with; empty: that of the scenario.
+        is_over_ros: Whether they run as a graph of ROS nodes.
+
+    Returns:
+        The scenarios, and an error for each scenario that cannot be run.
+
+    Raises:
+        SettingsError: A suite or planner does not exist.
     """
     for name in planners:
         _check_planner(name, is_over_ros)
@@ -46,16 +54,16 @@ def _check_planner(name: str, is_over_ros: bool) -> None:
 
         official_move_base()
     else:
-        raise SettingsError(f"planner {name}: that move_base is a node: add --over ros")
+        raise SettingsError(f"planner {name} runs only over ROS; add --over ros")
 
 
 def load_scenario(name: str, planner: str = "", is_over_ros: bool = False) -> Scenario:
-    """The scenario of a file or name. Raises SettingsError, also if that is wrong or there are several."""
+    """Load one scenario by file or name. Raises SettingsError if it cannot be run or there are several."""
     scenarios, errors = load_suites([name], [planner] if planner else [], is_over_ros)
     if errors:
         raise SettingsError(errors[0])
     if len(scenarios) != 1:
-        raise SettingsError(f"{name}: {len(scenarios)} scenarios, not one")
+        raise SettingsError(f"{name}: expected one scenario, found {len(scenarios)}")
     return scenarios[0]
 
 
@@ -69,11 +77,11 @@ def _files(suite: str) -> List[Path]:
             return found
         raise SettingsError(f"{suite}: no scenarios (*.yaml) in this folder")
     known = ", ".join(sorted(path.stem for path in FOLDER.glob("*.yaml")))
-    raise SettingsError(f"{suite}: neither a file nor a folder nor one of scenarios/ ({known})")
+    raise SettingsError(f"{suite}: not a file, a folder or one of scenarios/ ({known})")
 
 
 def _check(scenario: Scenario) -> None:
-    """Raises PlanarError, naming the scenario's file, if it cannot even be set up for its first seed."""
+    """Set the scenario up for its first seed. Raises SettingsError that names the file if that fails."""
     from planar.maps.places import obstruction_at
     from sim_bridge import Simulation, robot_named
 

@@ -1,4 +1,4 @@
-"""The commands of the environments, one a module; a module that is put here is found."""
+"""The commands of the Gymnasium environments; a new module in this folder is found automatically."""
 
 from home_service.command import CommandFolder
 

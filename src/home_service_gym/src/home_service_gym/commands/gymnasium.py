@@ -8,18 +8,18 @@ from supervision.command_line import argument, option
 
 @dataclass(frozen=True)
 class Gymnasium:
-    """Plays episodes of a Gymnasium environment and says how they went."""
+    """Run episodes of a Gymnasium environment and print their outcomes."""
 
-    environment: str = argument("its name, like PointGoal-v0", metavar="ENVIRONMENT")
+    environment: str = argument("environment id, such as PointGoal-v0", metavar="ENVIRONMENT")
     policy: str = option(
         "",
-        "module/function: gets an observation, gives an action (default: actions by chance)",
+        "module/function: takes an observation, returns an action (default: random actions)",
         metavar="NAME",
     )
-    arguments: str = option("{}", 'of the environment, like "{scenario: homes}"', metavar="YAML")
-    seed: int = option(0, "of all chance", type=seed)
-    episodes: int = option(1, "how many", type=count)
-    gif: Optional[Path] = option(None, "an animation of them", type=Path)
+    arguments: str = option("{}", 'arguments of the environment, such as "{scenario: homes}"', metavar="YAML")
+    seed: int = option(0, "seed of the first episode", type=seed)
+    episodes: int = option(1, "number of episodes", type=count)
+    gif: Optional[Path] = option(None, "write an animation to this file", type=Path)
 
     def run(self) -> int:
         from home_service_gym.episodes import EpisodeRunner, load_policy, make_environment

@@ -7,14 +7,14 @@ from supervision.command_line import option
 
 @dataclass(frozen=True)
 class Train:
-    """Trains the learned local planner of plugin_examples in generated homes, on CPUs alone."""
+    """Train the learned local planner of plugin_examples in generated homes, on the CPU."""
 
-    generations: int = option(60, "how many", type=count)
-    pairs: int = option(8, "of opposite changes that a generation tries", type=count)
-    episodes: int = option(4, "that each is tried on", type=count)
-    workers: int = option(2, "processes", type=count)
-    seed: int = option(0, "of all chance", type=seed)
-    output: Path = option(Path("learned.npz"), "the weights are kept here after each generation", type=Path)
+    generations: int = option(60, "number of generations", type=count)
+    pairs: int = option(8, "antithetic pairs of each generation", type=count)
+    episodes: int = option(4, "episodes for each candidate", type=count)
+    workers: int = option(2, "number of processes", type=count)
+    seed: int = option(0, "seed of all random numbers", type=seed)
+    output: Path = option(Path("learned.npz"), "weights file, written after each generation", type=Path)
 
     def run(self) -> int:
         import numpy as np

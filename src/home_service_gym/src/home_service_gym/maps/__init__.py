@@ -1,1 +1,1 @@
-"""What is known of the ground around a robot."""
+"""Map observations."""

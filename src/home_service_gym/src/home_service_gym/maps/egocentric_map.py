@@ -1,4 +1,4 @@
-"""What the map is like around the robot, as a picture."""
+"""Egocentric map: the map around the robot as an image."""
 
 import math
 from typing import Any, Optional
@@ -9,18 +9,18 @@ from gymnasium import spaces
 
 from planar import FREE, OCCUPIED, OccupancyGrid, Pose2
 
-# Cells along a side, and metres of a cell.
+# Cells along a side, and side of a cell [m].
 SIDE, CELL = 64, 0.15
 UNKNOWN, FREE_SHADE, OCCUPIED_SHADE = 0, 128, 255
 
 
 def map_space() -> spaces.Space[Any]:
-    """Of what ``MapAround`` shows."""
+    """Return the observation space of an ``EgocentricMap``."""
     return spaces.Box(0, 255, (SIDE, SIDE), np.uint8)
 
 
 class EgocentricMap:
-    """A grid as a picture, seen from above with the robot in the middle, looking to the right."""
+    """A map as an image centred on the robot, which faces to the right."""
 
     def __init__(self, grid: OccupancyGrid):
         self._map_in_grid, self._resolution = grid.origin.inverse(), grid.resolution
@@ -30,21 +30,21 @@ class EgocentricMap:
         self._all = np.ones(grid.cells.shape, dtype=np.bool_)
 
     def view_from(self, base: Pose2, explored: Optional[np.ndarray] = None) -> np.ndarray:
-        """(SIDE, SIDE), uint8. ``known``: which cells, bool (rows, cols), are shown; None: all."""
-        place = self._map_in_grid @ base
+        """Return the image (SIDE, SIDE), uint8; ``explored``: cells to show, bool (rows, cols); None: all."""
+        base_in_grid = self._map_in_grid @ base
         return _draw(
             self._shades,
             self._all if explored is None else explored,
-            place.x / self._resolution,
-            place.y / self._resolution,
-            place.yaw,
+            base_in_grid.x / self._resolution,
+            base_in_grid.y / self._resolution,
+            base_in_grid.yaw,
             CELL / self._resolution,
         )
 
 
 @numba.njit(cache=True)
 def _draw(shades, explored, x, y, yaw, step):
-    """``x``, ``y``: of the robot, and ``step``, between the picture's cells, all in cells of the grid."""
+    """``x``, ``y`` of the robot and the ``step`` between image cells, all in cells of the grid."""
     rows, cols = shades.shape
     picture = np.full((SIDE, SIDE), UNKNOWN, dtype=np.uint8)
     ahead_x, ahead_y = math.cos(yaw) * step, math.sin(yaw) * step

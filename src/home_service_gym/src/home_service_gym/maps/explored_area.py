@@ -1,4 +1,4 @@
-"""Which cells of a map the beams of a lidar have reached."""
+"""Cells of a map that the beams of a lidar have reached."""
 
 import math
 
@@ -7,28 +7,33 @@ import numpy as np
 
 from planar import FREE, OCCUPIED, OccupancyGrid, Pose2, Scan
 
-# What a cell may be: no beam has reached it yet, it is free floor besides, it lets no beam through.
+# Bits of a cell: not reached by a beam yet, free floor, blocks beams.
 UNSEEN, FLOOR, SOLID = np.uint8(1), np.uint8(2), np.uint8(4)
 
 
 class ExploredArea:
-    """``known``: which cells of a grid have been reached, bool (rows, cols); ``share``: of its free floor."""
+    """The explored part of a map.
+
+    Attributes:
+        explored: Reached cells, bool (rows, cols).
+    """
 
     def __init__(self, grid: OccupancyGrid):
         self._map_in_grid, self._resolution = grid.origin.inverse(), grid.resolution
         is_free = grid.cells == FREE
         cells = UNSEEN + FLOOR * is_free + SOLID * (grid.cells == OCCUPIED)
-        self._cells = np.pad(cells, 1, constant_values=SOLID)  # which no beam leaves
+        self._cells = np.pad(cells, 1, constant_values=SOLID)  # no beam leaves the map
         self._seen = np.zeros(self._cells.shape, dtype=np.bool_)
         self.explored = self._seen[1:-1, 1:-1]
         self._all, self._count = max(int(np.count_nonzero(is_free)), 1), 0
 
     @property
     def share(self) -> float:
+        """Explored share of the free area."""
         return self._count / self._all
 
     def add_scan(self, base_in_map: Pose2, scan: Scan) -> float:
-        """Takes in what beams have gone through, and what they have met; returns the new free floor, m^2."""
+        """Add the cells along the beams of a scan; return the newly explored free area [m2]."""
         laser = self._map_in_grid @ base_in_map @ scan.laser_in_base
         turn = -1.0 if scan.upside_down else 1.0
         new_cells = _mark(
@@ -48,10 +53,7 @@ class ExploredArea:
 
 @numba.njit(cache=True)
 def _mark(cells, seen, x, y, first, increment, ranges, most, resolution):
-    """Marks what lies along beams, and a cell beyond, as seen; returns how much free floor is new.
-
-    ``x`` and ``y``, of the laser, are in cells.
-    """
+    """Mark the cells along beams and one beyond; return the number of new free cells."""
     rows, cols = cells.shape
     if not (0.0 <= y < rows and 0.0 <= x < cols):
         return 0
@@ -69,18 +71,18 @@ def _mark(cells, seen, x, y, first, increment, ranges, most, resolution):
 
 @numba.njit(cache=True)
 def _mark_beam(cells, seen, along, across, run, rise, stride_along, stride_across, reach):
-    """Of a beam that goes farther along than across: at each step along, it is in one cell or in two.
+    """Mark the cells of a beam that advances faster along than across; each step visits one or two cells.
 
-    Whether they are two is not asked, as no processor guesses that well, and each is looked at without ado.
+    Both are always visited: a branch would be mispredicted too often.
     """
-    begin, new_cells = math.floor(along), 0
-    way = along - begin if run < 0.0 else begin + 1.0 - along
+    start, new_cells = math.floor(along), 0
+    first_step = along - start if run < 0.0 else start + 1.0 - along
     step = -stride_along if run < 0.0 else stride_along
     slope, end = rise / abs(run), reach * abs(run)
-    row = int(begin) * stride_along
+    row = int(start) * stride_along
     near = row + int(across) * stride_across
-    for steps in range(max(math.ceil(end - way), 0) + 1):
-        far = row + int(across + slope * min(way + steps, end)) * stride_across
+    for steps in range(max(math.ceil(end - first_step), 0) + 1):
+        far = row + int(across + slope * min(first_step + steps, end)) * stride_across
         if cells[np.uint64(near)] | cells[np.uint64(far)]:
             for at in (near, far):
                 cell = cells[at]

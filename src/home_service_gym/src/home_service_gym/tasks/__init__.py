@@ -1,1 +1,1 @@
-"""What is to be done in the environments, one a file."""
+"""Tasks of the environments."""

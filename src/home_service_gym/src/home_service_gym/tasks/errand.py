@@ -1,4 +1,4 @@
-"""The home service: fetch an object in one place and deliver it in another."""
+"""The errand: wait in the pick-up zone, then drive to the drop-off zone."""
 
 from typing import Any, Dict, Sequence
 
@@ -20,14 +20,19 @@ from home_service_gym.traversable_space import DistanceToGoal
 from planar import Pose2
 from sim_bridge.world import Body
 
-# Metres from a zone's middle within which the robot is there, as a mission is judged; m/s at which it stands.
+# Radius of a zone as in missions [m]; speed below which the robot counts as standing [m/s].
 GOAL_RADIUS, STOPPED_SPEED = 0.25, 0.05
 
 
 class ErrandTask:
-    """From ``start`` to ``pickup``, where it stands for ``seconds``, then to ``dropoff``, where it stops.
+    """Wait at the pick-up pose, then stop at the drop-off pose.
 
-    ``rate``: control periods a second.
+    Args:
+        start: Start pose in the world frame.
+        pickup: Pick-up pose in the world frame.
+        dropoff: Drop-off pose in the world frame.
+        seconds: Time to wait at the pick-up pose [s].
+        rate: Control rate [Hz].
     """
 
     def __init__(self, start: Pose2, pickup: Pose2, dropoff: Pose2, seconds: float, rate: int):
@@ -55,13 +60,13 @@ class ErrandTask:
     def step(self, state: EpisodeState) -> TaskStep:
         base = state.base_in_world
         reward = PERIOD_REWARD + PROGRESS_REWARD * self._distance_to_goal.decrease(base)
-        is_there = (
+        is_in_zone = (
             base.distance_to(self._distance_to_goal.goal) <= GOAL_RADIUS
             and abs(state.twist.v) < STOPPED_SPEED
         )
-        self._waited = self._waited + 1 if is_there else 0
+        self._waited = self._waited + 1 if is_in_zone else 0
         if self._is_carrying:
-            return TaskStep(reward + SUCCESS_REWARD, "success") if is_there else TaskStep(reward)
+            return TaskStep(reward + SUCCESS_REWARD, "success") if is_in_zone else TaskStep(reward)
         if self._waited < self._periods_to_wait:
             return TaskStep(reward)
         self._is_carrying = True

@@ -1,4 +1,4 @@
-"""See all of a home that nobody has told about."""
+"""Exploration of an unknown home."""
 
 from typing import Any, Dict, Sequence
 
@@ -11,12 +11,12 @@ from home_service_gym.maps.explored_area import ExploredArea
 from home_service_gym.task import PERIOD_REWARD, SUCCESS_REWARD, EpisodeStart, Overlay, TaskStep
 from sim_bridge.world import Body
 
-# The share of all free floor that is enough; what a square metre that was not known is worth.
+# Share of the free area that completes the task; reward for each newly explored square metre.
 COMPLETE_SHARE, AREA_REWARD = 0.95, 1.0
 
 
 class ExploreTask:
-    """The robot is told which cells of the true map its lidar has reached; it is put anywhere."""
+    """Explore a home from a random pose; the explored part of the true map is observed."""
 
     def bodies(self) -> Sequence[Body]:
         return ()

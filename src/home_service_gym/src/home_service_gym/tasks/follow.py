@@ -1,4 +1,4 @@
-"""After somebody who walks through a home, as follow_me does."""
+"""Following a person who walks through a home, as follow_me does."""
 
 from typing import Any, Dict, List, Sequence
 
@@ -20,19 +20,19 @@ from planar import Pose2
 from sim_bridge.scripted_trajectories import ScriptedTrajectory
 from sim_bridge.world import Body
 
-# Metres: the gap between the middles that is best, the one at which the leader is lost, the leader itself.
+# Metres: best distance to the leader, distance at which the leader is lost, radius and height of the leader.
 BEST_GAP, MAX_GAP, RADIUS, HEIGHT = 0.9, 4.0, 0.18, 1.2
-# Metres from the origin along both axes: where the leader waits for its first episode.
+# Position of the leader before its first episode, outside of the home [m].
 PARKING_COORDINATE = 50.0
-# What a period at the best gap is worth; seconds and m/s of the leader's walk.
+# Reward of a period at the best distance; duration [s] and speed [m/s] of the leader.
 GAP_REWARD, SECONDS, SPEED = 0.1, 120.0, 0.35
-# How surely the leader looks for another place to go to rather than turn back.
+# Probability that the leader chooses another goal instead of turning back.
 KEEP_DIRECTION_PROBABILITY = 0.95
 LEADER = post("leader", Pose2(PARKING_COORDINATE, PARKING_COORDINATE), RADIUS, HEIGHT, is_kinematic=True)
 
 
 class FollowTask:
-    """Stay ``GAP`` behind the leader, who walks from one place to another and does not look round."""
+    """Stay ``BEST_GAP`` behind a leader who walks between random waypoints."""
 
     def bodies(self) -> Sequence[Body]:
         return (LEADER,)
@@ -71,7 +71,7 @@ def _turns_back(path_xy: np.ndarray, next_xy: np.ndarray) -> bool:
 
 
 def _leader_path(traversable_space: TraversableSpace, rng: np.random.Generator) -> np.ndarray:
-    """Points (N, 2) of a way from place to place that takes at least ``SECONDS``."""
+    """Points (N, 2) of a path between random waypoints that takes at least ``SECONDS``."""
     count, length = len(traversable_space.waypoints), 0.0
     paths: List[np.ndarray] = []
     place = int(rng.integers(count))

@@ -1,4 +1,4 @@
-"""To a goal anywhere in a home, from anywhere."""
+"""Point goal navigation: from a random pose to a random goal."""
 
 from typing import Any, Dict, Sequence
 
@@ -22,36 +22,43 @@ from sim_bridge.world import Body
 
 
 class PointGoalTask:
-    """Within ``radius``, m, of the goal is there; the way to it has at least ``least_way``, m.
+    """Reach a random goal.
 
-    ``lookahead``: also the point that far, m, ahead on the shortest way is told; 0: it is not.
+    Args:
+        radius: Distance at which the goal counts as reached [m].
+        min_path_length: Minimum length of the shortest path [m].
+        lookahead: Distance along the shortest path of the observed ``waypoint`` [m]; 0: none is observed.
     """
 
-    def __init__(self, radius: float = 0.3, least_way: float = 1.0, lookahead: float = 0.0):
-        self._radius, self._least_way, self._lookahead = radius, least_way, lookahead
+    def __init__(self, radius: float = 0.3, min_path_length: float = 1.0, lookahead: float = 0.0):
+        self._radius, self._min_path_length, self._lookahead = radius, min_path_length, lookahead
 
     def bodies(self) -> Sequence[Body]:
         return ()
 
     def spaces(self) -> Dict[str, spaces.Space[Any]]:
-        told: Dict[str, spaces.Space[Any]] = {"goal": goal_space()}
+        entries: Dict[str, spaces.Space[Any]] = {"goal": goal_space()}
         if self._lookahead:
-            told["waypoint"] = spaces.Box(-MAX_GOAL_DISTANCE, MAX_GOAL_DISTANCE, (2,), np.float32)
-        return told
+            entries["waypoint"] = spaces.Box(-MAX_GOAL_DISTANCE, MAX_GOAL_DISTANCE, (2,), np.float32)
+        return entries
 
     def reset(self, simulation: EpisodeSimulation, rng: np.random.Generator) -> EpisodeStart:
         traversable_space = simulation.traversable_space
         goal = traversable_space.sample_pose(rng)
-        start = traversable_space.sample_pose(rng, traversable_space.distances_to(goal), self._least_way)
+        start = traversable_space.sample_pose(
+            rng, traversable_space.distances_to(goal), self._min_path_length
+        )
         self._distance_to_goal = DistanceToGoal(traversable_space, goal, start)
         return EpisodeStart(start)
 
     def observation(self, state: EpisodeState) -> Dict[str, np.ndarray]:
         base = state.base_in_world
-        told = {"goal": goal_observation(base, self._distance_to_goal.goal)}
+        observation = {"goal": goal_observation(base, self._distance_to_goal.goal)}
         if self._lookahead:
-            told["waypoint"] = self._distance_to_goal.waypoint(base, self._lookahead).astype(np.float32)
-        return told
+            observation["waypoint"] = self._distance_to_goal.waypoint(base, self._lookahead).astype(
+                np.float32
+            )
+        return observation
 
     def step(self, state: EpisodeState) -> TaskStep:
         reward = PERIOD_REWARD + PROGRESS_REWARD * self._distance_to_goal.decrease(state.base_in_world)

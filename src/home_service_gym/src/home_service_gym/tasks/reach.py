@@ -1,4 +1,4 @@
-"""To a place ahead without a map, as in BARN and DynaBARN."""
+"""A goal in the odometry frame without a map, as in BARN and DynaBARN."""
 
 from typing import Any, Dict, Sequence
 
@@ -21,9 +21,12 @@ from sim_bridge.world import Body
 
 
 class ReachTask:
-    """``goal_in_odom`` is seen from ``start``; within ``radius``, m, of it the robot has arrived.
+    """Reach a goal. It is observed through odometry; rewards use the true pose.
 
-    The robot is told of the goal by its odometry, and judged by the truth.
+    Args:
+        start: Start pose in the world frame.
+        goal_in_odom: Goal pose in the frame of the start pose.
+        radius: Distance at which the goal counts as reached [m].
     """
 
     def __init__(self, start: Pose2, goal_in_odom: Pose2, radius: float):
@@ -37,7 +40,7 @@ class ReachTask:
         return {"goal": goal_space()}
 
     def reset(self, simulation: EpisodeSimulation, rng: np.random.Generator) -> EpisodeStart:
-        self._left = self._start.distance_to(self._goal)
+        self._remaining = self._start.distance_to(self._goal)
         self._trajectories = simulation.arena.world.trajectories
         return EpisodeStart(self._start)
 
@@ -45,10 +48,10 @@ class ReachTask:
         return {"goal": goal_observation(state.base_in_odom, self._goal_in_odom)}
 
     def step(self, state: EpisodeState) -> TaskStep:
-        left = state.base_in_world.distance_to(self._goal)
-        reward = PERIOD_REWARD + PROGRESS_REWARD * (self._left - left)
-        self._left = left
-        return TaskStep(reward + SUCCESS_REWARD, "success") if left <= self._radius else TaskStep(reward)
+        remaining = state.base_in_world.distance_to(self._goal)
+        reward = PERIOD_REWARD + PROGRESS_REWARD * (self._remaining - remaining)
+        self._remaining = remaining
+        return TaskStep(reward + SUCCESS_REWARD, "success") if remaining <= self._radius else TaskStep(reward)
 
     def overlay(self) -> Overlay:
         return Overlay((self._goal, self._radius), self._trajectories)

@@ -1,4 +1,4 @@
-"""Many missions over all cores, or over machines."""
+"""Campaigns: many scenario runs, distributed over the cores of one or several machines by Dask."""
 
 from laboratory.campaign.campaign import Campaign, ScenarioRun
 from laboratory.campaign.workers import Workers

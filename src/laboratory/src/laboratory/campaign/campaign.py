@@ -1,4 +1,4 @@
-"""Missions played by workers, their results kept as they come."""
+"""Scenario runs distributed to Dask workers; each result is stored as soon as it arrives."""
 
 from dataclasses import dataclass
 from itertools import islice
@@ -6,6 +6,7 @@ from typing import Any, Callable, Dict, Iterable
 
 from distributed import Client, Future, as_completed
 
+from laboratory.campaign.workers import MAX_WORKER_DEATHS
 from laboratory.errors import WorkersError
 from laboratory.results.result import RunKey, RunResult, error_result
 from laboratory.results.store import ResultStore
@@ -13,13 +14,19 @@ from laboratory.results.version import version
 from laboratory.scenario.scenario import Scenario
 
 RETRIES = 2
-# Missions that are handed out for each worker: one is played, the next waits.
+# Runs submitted for each worker: one in progress, one queued.
 QUEUED_PER_WORKER = 2
 
 
 @dataclass(frozen=True, eq=False)
 class ScenarioRun:
-    """A scenario with one of its seeds; ``digest``: of the scenario."""
+    """One run of a campaign.
+
+    Attributes:
+        scenario: The scenario to run.
+        seed: Seed of the run.
+        digest: ``scenario.digest()``, which is costly to compute.
+    """
 
     scenario: Scenario
     seed: int
@@ -31,9 +38,13 @@ class ScenarioRun:
 
 
 class Campaign:
-    """Hands out missions a few at a time, so that memory stays the same however many there are.
+    """Submits runs a few at a time, so that memory use does not depend on their number.
 
-    ``heard``: called with each result, after it has been kept.
+    Args:
+        client: Connection to the workers.
+        store: Store to which every result is added.
+        on_result: Called with each run and its result, after the result has been stored.
+        workers: Number of workers.
     """
 
     def __init__(
@@ -48,7 +59,12 @@ class Campaign:
         self._submitted: Dict[str, ScenarioRun] = {}
 
     def run(self, runs: Iterable[ScenarioRun]) -> None:
-        """Plays them all. Raises ResultsError, and WorkersError if there is nobody left to play."""
+        """Execute all runs.
+
+        Raises:
+            ResultsError: A result cannot be stored.
+            WorkersError: No worker is left, or one has another version of the software.
+        """
         pending = iter(runs)
         first = [self._submit(run) for run in islice(pending, self._max_submitted)]
         completed = as_completed(first, loop=self._client.loop)
@@ -69,22 +85,28 @@ class Campaign:
 
     def _result_of(self, future: Any, run: ScenarioRun) -> RunResult:
         if future.status in ("cancelled", "lost"):
-            raise WorkersError("the scheduler is gone; what has been played is kept")
+            raise WorkersError("lost the connection to the scheduler; finished runs are stored")
         error = future.exception() if future.status == "error" else None
         if isinstance(error, WorkersError):
             raise error
         if error is None:
             return future.result()
-        name = type(error).__name__
-        text = "its worker died again and again" if name == "KilledWorker" else f"{name}: {error}"
+        if type(error).__name__ == "KilledWorker":
+            text = f"the worker process died {MAX_WORKER_DEATHS} times"
+        else:
+            text = f"{type(error).__name__}: {error}"
         return error_result(RuntimeError(text), run.key)
 
 
 def run_on_worker(scenario: Scenario, key: RunKey) -> RunResult:
-    """What a worker does. Raises WorkersError if it has other software than who asks."""
+    """Run a scenario in a worker process.
+
+    Raises:
+        WorkersError: The worker has another version of the software than the process that submitted the run.
+    """
     from laboratory.runner import run_scenario
 
     if version() != key.version:
-        text = f"a worker has another version of the software ({version()}) than this ({key.version})"
+        text = f"a worker has another version of the software: {version()}, expected {key.version}"
         raise WorkersError(text)
     return run_scenario(scenario, key.seed, key.digest)

@@ -1,16 +1,16 @@
-"""How far a campaign is, told in the terminal."""
+"""Progress of a campaign in the terminal."""
 
 import time
 from typing import Callable
 
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-# Seconds between lines where there is no terminal.
+# Seconds between progress lines if the output is not a terminal.
 PRINT_PERIOD = 15.0
 
 
 class CampaignProgress:
-    """Counts results: a bar in a terminal, else a line now and then. A context."""
+    """Context manager that shows a progress bar in a terminal and prints progress lines otherwise."""
 
     def __init__(self, total: int, clock: Callable[[], float] = time.monotonic):
         self._total, self._clock = total, clock
@@ -29,7 +29,7 @@ class CampaignProgress:
         self._bar.stop()
 
     def count(self, success: bool) -> None:
-        """One more."""
+        """Count a finished run."""
         self._completed, self._succeeded = self._completed + 1, self._succeeded + success
         self._bar.update(self._task, advance=1, description=f"{self._succeeded} succeeded")
         now = self._clock()
@@ -38,7 +38,7 @@ class CampaignProgress:
             print(self.line(now), flush=True)
 
     def line(self, now: float) -> str:
-        """How many, how fast, how long it will take."""
+        """Return the progress line: runs completed, rate and estimated remaining time."""
         rate = self._completed / max(now - self._start, 1e-9)
         remaining = (self._total - self._completed) / rate if self._completed else float("inf")
         return (

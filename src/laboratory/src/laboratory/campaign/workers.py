@@ -1,4 +1,4 @@
-"""Who plays: processes of this machine, or those of a scheduler of Dask."""
+"""Worker processes of a campaign: on this machine, or those of a Dask scheduler."""
 
 import logging
 import os
@@ -13,25 +13,35 @@ from distributed import Client, LocalCluster
 
 from laboratory.errors import WorkersError
 
-# A mission is lost for good when so many workers have died of it.
+# A run is recorded as an error after it has killed this many workers.
 MAX_WORKER_DEATHS = 3
-# Workers are renewed now and then, so that whatever they leak stays small.
+# Workers are replaced regularly to bound the effect of memory leaks.
 LIFETIME, LIFETIME_STAGGER = "60 minutes", "10 minutes"
+# Seconds.
 CONNECT_TIMEOUT = 20
-# Dask has workers give back what they free at once, only to ask for it anew: 20 000 page faults a mission.
+# By default Dask makes malloc return freed memory at once, which costs 20 000 page faults a run.
 MALLOC_ENVIRONMENT = {"MALLOC_TRIM_THRESHOLD_": 2**27, "MALLOC_MMAP_THRESHOLD_": 2**26, "MALLOC_ARENA_MAX": 1}
 
 
 @dataclass(frozen=True)
 class Workers:
-    """``count``: processes here, 0: one for each core. ``scheduler``: the address of one, instead of them."""
+    """Which worker processes a campaign uses.
+
+    Attributes:
+        count: Number of processes on this machine; 0: one for each core.
+        scheduler: Address of a Dask scheduler, whose workers are used instead.
+    """
 
     count: int = 0
     scheduler: str = ""
 
     @contextmanager
     def client(self) -> Iterator[Client]:
-        """A connection to them, which is closed with them. Raises WorkersError."""
+        """Start or connect to the workers for the duration of the context.
+
+        Raises:
+            WorkersError: No scheduler with workers answers at the address.
+        """
         dask.config.set(
             {
                 "distributed.scheduler.worker-saturation": 1.0,
@@ -68,7 +78,7 @@ class Workers:
             with Client(cluster, set_as_default=False) as client:
                 yield client
         finally:
-            with suppress(Exception):  # of processes that are ended anyway
+            with suppress(Exception):  # the processes are terminated in any case
                 cluster.close(timeout=10)
 
     @contextmanager
@@ -83,13 +93,13 @@ class Workers:
 
 
 def worker_count(client: Any) -> int:
-    """How many workers there are now."""
+    """Return the current number of workers."""
     return len(client.scheduler_info(n_workers=-1)["workers"])
 
 
 @contextmanager
 def _ignoring_sigint() -> Iterator[None]:
-    """Processes that are started meanwhile do not hear Ctrl-C, which this one hears for them."""
+    """Start child processes that ignore SIGINT: only this process handles Ctrl-C."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return

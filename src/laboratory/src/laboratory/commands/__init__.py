@@ -1,4 +1,4 @@
-"""The commands of the laboratory, one a module; a module that is put here is found."""
+"""The commands of the laboratory, one module each; a new module in this folder is found automatically."""
 
 from home_service.command import CommandFolder
 

@@ -9,32 +9,34 @@ from supervision.command_line import argument, option
 
 @dataclass(frozen=True)
 class Evaluate:
-    """Plays suites of scenarios over all cores, each seed once, and says what that proves."""
+    """Run suites of scenarios on all cores, each seed once, and report statistics."""
 
     suites: Tuple[str, ...] = argument(
-        "files or folders of scenarios, or names in scenarios/", nargs="+", metavar="SUITE"
+        "scenario files, folders of them, or names in scenarios/", nargs="+", metavar="SUITE"
     )
-    seeds: Optional[str] = option(None, "like 0-999 (default: those of the scenario)", metavar="SEEDS")
+    seeds: Optional[str] = option(None, "such as 0-999 (default: those of the scenario)", metavar="SEEDS")
     planner: Optional[Tuple[str, ...]] = option(
         None,
-        "with each of these local planners, or official over ROS (default: the scenario's)",
+        "run with each of these local planners; official needs --over ros (default: the scenario's)",
         nargs="+",
         metavar="NAME",
     )
     workers: Optional[int] = option(None, "processes (default: one for each core)", type=count)
-    scheduler: str = option("", "Dask's, instead of processes here: tcp://HOST:8786", metavar="ADDRESS")
+    scheduler: str = option(
+        "", "Dask scheduler whose workers are used instead: tcp://HOST:8786", metavar="ADDRESS"
+    )
     require: Optional[Tuple[str, ...]] = option(
-        None, 'exit code 1 unless this holds of each scenario: "success >= 0.99"', nargs="+", metavar="RULE"
+        None, 'exit code 1 unless every scenario satisfies it: "success >= 0.99"', nargs="+", metavar="RULE"
     )
     against: Optional[str] = option(
         None,
-        "exit code 1 if a scenario is worse than with this version, on the same seeds",
+        "exit code 1 if a scenario is worse than with this version on the same seeds",
         metavar="VERSION",
     )
     over: str = option(
-        "process", "what plays each: one process, or ROS and its nodes", choices=("process", "ros")
+        "process", "run each scenario in one process, or as a graph of ROS nodes", choices=("process", "ros")
     )
-    output: Path = option(Path("runs/laboratory"), "results are kept and told here", type=Path)
+    output: Path = option(Path("runs/laboratory"), "folder of the results, tables and report", type=Path)
 
     def run(self) -> int:
         from laboratory.campaign import Workers
@@ -53,7 +55,7 @@ class Evaluate:
         for complaint in errors:
             print_error(complaint)
         if not scenarios:
-            raise SettingsError("no scenario is left to be played")
+            raise SettingsError("no scenario can be run")
         evaluation = Evaluation(scenarios, seeds, self.output / "results.sqlite")
         earlier = evaluation.evaluated(evaluation.version_with_prefix(self.against)) if self.against else []
         raise_when_interrupted()
@@ -61,7 +63,7 @@ class Evaluate:
             try:
                 evaluation.run(Workers(self.workers or 0, self.scheduler))
             except (PlanarError, RunInterruptedError):
-                with suppress(PlanarError):  # what ended it counts, though a full disk may end this too
+                with suppress(PlanarError):  # report the first error, even if writing the tables fails too
                     evaluated = evaluation.evaluated()
                     if any(each.results for each in evaluated):
                         self._report(evaluated)
@@ -74,7 +76,7 @@ class Evaluate:
         return 2 if errors else int(bool(violated))
 
     def _report(self, evaluated: Any) -> None:
-        """In the terminal, in tables and on the page."""
+        """Write the results to the terminal, the tables and the page."""
         from laboratory.page import page_html
         from laboratory.report import summary_lines
         from laboratory.results.export import export

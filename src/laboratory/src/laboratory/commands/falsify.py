@@ -8,18 +8,20 @@ from supervision.command_line import argument, option
 
 @dataclass(frozen=True)
 class Falsify:
-    """Searches for what breaks the robot in a scenario, and shrinks it to the least that still does."""
+    """Search for disturbances that make a scenario fail, and shrink the first failing case."""
 
-    scenario: str = argument("file of a scenario, or its name in scenarios/", metavar="SCENARIO")
-    trials: int = option(200, "cases that are tried at most", type=count)
-    boxes: int = option(4, "boxes at most", type=int)
-    people: int = option(2, "people at most", type=int)
-    faults: int = option(1, "faults at most", type=int)
-    seed: int = option(0, "of the search", type=seed)
+    scenario: str = argument("scenario file, or its name in scenarios/", metavar="SCENARIO")
+    trials: int = option(200, "maximum number of cases", type=count)
+    boxes: int = option(4, "maximum number of boxes", type=int)
+    people: int = option(2, "maximum number of pedestrians", type=int)
+    faults: int = option(1, "maximum number of faults", type=int)
+    seed: int = option(0, "seed of the search", type=seed)
     planner: str = option("", "local planner (default: that of the scenario)", metavar="NAME")
     workers: Optional[int] = option(None, "processes (default: one for each core)", type=count)
-    scheduler: str = option("", "Dask's, instead of processes here: tcp://HOST:8786", metavar="ADDRESS")
-    output: Path = option(Path("runs/falsify"), "what is found is kept here", type=Path)
+    scheduler: str = option(
+        "", "Dask scheduler whose workers are used instead: tcp://HOST:8786", metavar="ADDRESS"
+    )
+    output: Path = option(Path("runs/falsify"), "folder of the results and of the failing case", type=Path)
 
     def run(self) -> int:
         from laboratory.campaign import Workers
@@ -48,7 +50,8 @@ class Falsify:
         path = write_case(scenario, case, result, self.output)
         print(f"{result.outcome.upper()}: {result.reason}")
         print(
-            f"{len(found.elements)} pieces shrunk to {len(case.elements)}: ./scripts/play.sh {path}", end=" "
+            f"shrunk from {len(found.elements)} to {len(case.elements)} elements: ./scripts/play.sh {path}",
+            end=" ",
         )
         print(f"--seed {case.seed}")
         return 1

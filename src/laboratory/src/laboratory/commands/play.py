@@ -7,12 +7,14 @@ from supervision.command_line import argument, option, words
 
 @dataclass(frozen=True)
 class Play(RunOptions):
-    """Plays one scenario with one seed, in one process or by the nodes, and says how it went."""
+    """Run one scenario with one seed, in one process or as a graph of nodes, and report the outcome."""
 
-    scenario: str = argument("file of a scenario, or its name in scenarios/", default="", metavar="SCENARIO")
-    seed: int = option(0, "of all chance", type=seed)
+    scenario: str = argument("scenario file, or its name in scenarios/", default="", metavar="SCENARIO")
+    seed: int = option(0, "seed of all random numbers", type=seed)
     planner: str = option("", "local planner (default: that of the scenario)", metavar="NAME")
-    over: str = option("process", "what plays it: one process, or the nodes", choices=("process", "ros"))
+    over: str = option(
+        "process", "run it in one process, or as a graph of ROS nodes", choices=("process", "ros")
+    )
 
     def run(self) -> int:
         from home_service.preload import preload_nodes
@@ -45,4 +47,4 @@ class Play(RunOptions):
         defaults = words(Play(scenario=self.scenario, seed=self.seed, planner=self.planner))
         given = [word for word in words(self) if word not in defaults and word.startswith("--")]
         if given:
-            raise SettingsError(f"{given[0]} is for a run over ROS: add --over ros")
+            raise SettingsError(f"{given[0]} applies only to runs over ROS; add --over ros")

@@ -8,22 +8,24 @@ from supervision.command_line import argument, option
 
 @dataclass(frozen=True)
 class Tune:
-    """Looks for parameters of move_base that are better on suites, and proves the gain on others."""
+    """Search for better move_base parameters on some suites, and prove the gain on others."""
 
-    suites: Tuple[str, ...] = argument("what is tuned on: as of evaluate.sh", nargs="+", metavar="SUITE")
+    suites: Tuple[str, ...] = argument("scenarios to tune on, as for evaluate.sh", nargs="+", metavar="SUITE")
     prove: Optional[Tuple[str, ...]] = option(
-        None, "suites on which the gain is to be proved (needed)", nargs="+", metavar="SUITE"
+        None, "suites on which the gain is tested (required)", nargs="+", metavar="SUITE"
     )
     space: Path = option(
-        Path("scenarios/tuning/mppi.yaml"), "parameters and their bounds", type=Path, metavar="FILE"
+        Path("scenarios/tuning/mppi.yaml"), "file of parameters and their bounds", type=Path, metavar="FILE"
     )
-    trials: int = option(64, "candidates that are tried", type=count)
-    seeds: str = option("0-9", "that candidates are tried on", metavar="SEEDS")
-    proof_seeds: str = option("1000-1099", "that the gain is proved on", metavar="SEEDS")
-    seed: int = option(0, "of the search", type=seed)
+    trials: int = option(64, "number of candidates", type=count)
+    seeds: str = option("0-9", "seeds each candidate runs with", metavar="SEEDS")
+    proof_seeds: str = option("1000-1099", "seeds for the test of the gain", metavar="SEEDS")
+    seed: int = option(0, "seed of the search", type=seed)
     workers: Optional[int] = option(None, "processes (default: one for each core)", type=count)
-    scheduler: str = option("", "Dask's, instead of processes here: tcp://HOST:8786", metavar="ADDRESS")
-    output: Path = option(Path("runs/tune"), "what is found is kept here", type=Path)
+    scheduler: str = option(
+        "", "Dask scheduler whose workers are used instead: tcp://HOST:8786", metavar="ADDRESS"
+    )
+    output: Path = option(Path("runs/tune"), "folder of the results and of tuned.yaml", type=Path)
 
     def run(self) -> int:
         from laboratory.campaign import Workers
@@ -33,12 +35,12 @@ class Tune:
         from supervision.interruption import raise_when_interrupted
 
         if not self.prove:
-            raise SettingsError("--prove: on which other suites is the gain to be proved?")
+            raise SettingsError("--prove is missing: name the suites on which the gain is tested")
         seeds, proof_seeds = parse_seeds(self.seeds), parse_seeds(self.proof_seeds)
         tuned_on, proved_on = self._scenarios(self.suites), self._scenarios(self.prove)
         candidates = {each.digest() for each in tuned_on} & {each.digest() for each in proved_on}
         if candidates and set(seeds) & set(proof_seeds):
-            raise SettingsError("--proof-seeds: of the same suite, they must be others than --seeds")
+            raise SettingsError("--proof-seeds must differ from --seeds: both contain the same scenario")
         raise_when_interrupted()
         tuning = Tuning(tuned_on, seeds, read_space(self.space), self.seed, self.output)
         with Workers(self.workers or 0, self.scheduler).client() as client:
@@ -60,7 +62,7 @@ class Tune:
     def _compare_gain(
         self, client: Any, scenarios: Sequence[Any], seeds: Tuple[int, ...], values: Any
     ) -> int:
-        """Plays them with the usual and with the tuned parameters; 0 if some are better and none worse."""
+        """Compare tuned with default parameters; return 0 if some scenario is better and none worse."""
         from laboratory.evaluation import Evaluation
         from laboratory.page.page import comparison_text
         from laboratory.search.tuning import RESULTS, with_values
@@ -79,5 +81,5 @@ class Tune:
             verdicts += [comparison.success, comparison.time]
             print(f"{before.scenario.label}, {comparison.pairs} seeds: {comparison_text(comparison)}")
         is_proved = BETTER in verdicts and WORSE not in verdicts
-        print("the gain is proved" if is_proved else "no gain is proved")
+        print("gain proved" if is_proved else "no gain proved")
         return 0 if is_proved else 1

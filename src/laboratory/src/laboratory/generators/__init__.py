@@ -1,1 +1,1 @@
-"""Worlds that nobody has drawn: the same from the same seed."""
+"""Procedural world generators; the same seed gives the same world."""

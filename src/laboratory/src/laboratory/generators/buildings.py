@@ -1,4 +1,4 @@
-"""Buildings: what homes, offices and halls have in common. Every place in them can be reached."""
+"""Generated buildings: what homes, offices and halls have in common. All their places are reachable."""
 
 import math
 from dataclasses import dataclass
@@ -21,13 +21,20 @@ from sim_bridge.doorway import Door
 from sim_bridge.views.true_map import true_map
 from sim_bridge.world import Body, World
 
-# Metres between two places; places a building.
+# Minimum distance between two places [m]; number of places in a building.
 PLACE_SPACING, PLACE_COUNT = 1.5, 5
 
 
 @dataclass(frozen=True)
 class BuildingLayout:
-    """A drawn building, metres, and where the robot starts in it."""
+    """Layout of a building [m].
+
+    Attributes:
+        walls: Rectangles of the walls.
+        furniture: Rectangles of the furniture.
+        start: Start position of the robot, which becomes the origin of the world.
+        doorways: Gaps in the walls.
+    """
 
     walls: Sequence[Rectangle]
     furniture: Sequence[Rectangle]
@@ -37,10 +44,16 @@ class BuildingLayout:
 
 @dataclass(frozen=True)
 class BuildingGenerator:
-    """Another one for each seed, of an area between two, square metres; the robot starts at the origin.
+    """World source with a different building for each seed; the robot starts at the origin.
 
-    A kind of building is derived from this in a file of its own, says its ``kind``, the ``stream`` of its
-    random numbers and which areas it can have, and draws.
+    Subclasses define the class attributes and ``layout``.
+
+    Attributes:
+        kind: Name of the kind of building.
+        stream: Number of its stream of random numbers.
+        areas: Smallest and largest area it supports [m2].
+        min_area: Smallest area to generate [m2].
+        max_area: Largest area to generate [m2].
     """
 
     kind: ClassVar[str]
@@ -50,6 +63,7 @@ class BuildingGenerator:
     max_area: float
 
     def layout(self, area: float, rng: np.random.Generator) -> BuildingLayout:
+        """Generate a building of this area [m2]."""
         raise NotImplementedError
 
     def arena(self, seed: int) -> Arena:
@@ -76,7 +90,7 @@ def _arena(source: BuildingGenerator, seed: int) -> Arena:
     grid = true_map(world)
     places = _places(grid, rng)
     if len(places) < 2:
-        raise SettingsError(f"the generated {source.kind} has no two places to stand")
+        raise SettingsError(f"the generated {source.kind} has fewer than two places where a robot can stand")
     doorways = [_door(f"door_{number}", gap, layout.start) for number, gap in enumerate(layout.doorways)]
     return Arena(world, grid, f"{source.kind} of {area:.0f} m2", None, places, tuple(doorways))
 
@@ -87,14 +101,14 @@ def _solid_body(name: str, solid: Rectangle, origin: Tuple[float, float]) -> Bod
 
 
 def _door(name: str, gap: WallSegment, origin: Tuple[float, float]) -> Door:
-    """What would fill a doorway."""
+    """The door that fills a doorway."""
     x, y = (gap.x1 + gap.x2) / 2.0 - origin[0], (gap.y1 + gap.y2) / 2.0 - origin[1]
     yaw = 0.0 if gap.x1 == gap.x2 else math.pi / 2.0
     return Door(name, Pose2(x, y, yaw), gap.length)
 
 
 def _places(grid: OccupancyGrid, rng: np.random.Generator) -> Tuple[NamedPlace, ...]:
-    """Where things are fetched and brought, apart from each other, all within reach of the origin."""
+    """Random places for deliveries, all reachable from the origin."""
     connected = connected_regions(grid, PASSAGE_CLEARANCE)
     ((row, col),) = grid.cells_of([[0.0, 0.0]])
     has_clearance = distance_field(grid.cells != FREE, grid.resolution) > STANDING_CLEARANCE
@@ -109,18 +123,18 @@ def _places(grid: OccupancyGrid, rng: np.random.Generator) -> Tuple[NamedPlace, 
 
 
 def area_reader(key: str, buildings: Type[BuildingGenerator]) -> Callable[[Table, Path], BuildingGenerator]:
-    """Reads them from ``key``: the area, from least to largest, if it is told."""
+    """Make the reader of the table ``key``, whose optional ``area`` is [smallest, largest] in m2."""
 
     def read(table: Table, folder: Path) -> BuildingGenerator:
         table.allow_only(key)
         part = table.table(key)
         part.allow_only("area")
-        smallest, max_area = buildings.areas
+        smallest, largest = buildings.areas
         if "area" not in part:
-            return buildings(smallest, max_area)
-        area = part.numbers("area", "least, largest")
-        is_fine = smallest <= area[0] <= area[1] <= max_area
-        part.check(is_fine, "area", f"within {smallest:g} to {max_area:g} m2, the least first")
+            return buildings(smallest, largest)
+        area = part.numbers("area", "smallest, largest")
+        is_fine = smallest <= area[0] <= area[1] <= largest
+        part.check(is_fine, "area", f"within {smallest:g} to {largest:g} m2, the smaller first")
         return buildings(*area)
 
     return read

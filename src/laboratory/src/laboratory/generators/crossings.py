@@ -1,4 +1,4 @@
-"""Cylinders that cross a place all the time, as in DynaBARN, others for each seed."""
+"""Generated moving cylinders in the style of DynaBARN (Nair et al., 2022)."""
 
 import math
 from dataclasses import dataclass
@@ -15,7 +15,8 @@ from planar.config.yaml_table import Table
 from sim_bridge.scripted_trajectories import ScriptedTrajectory
 from sim_bridge.world import Body, World
 
-# Metres: half the place's side, its walls, a cylinder; DynaBARN's start is outside its open side.
+# Metres: half the side of the area, thickness of its walls, size of a cylinder. The start, as in DynaBARN, is
+# outside of the open side.
 HALF, THICKNESS, RADIUS, HEIGHT = 10.0, 0.5, 0.5, 1.0
 START, GOAL_IN_ODOM = Pose2(11.0, 0.0, math.pi), Pose2(20.0, 0.0)
 MIN_SPEED, MAX_SPEED, MIN_COUNT, MAX_COUNT = 0.5, 1.9, 8, 14
@@ -25,9 +26,14 @@ _STREAM = 45
 
 @dataclass(frozen=True)
 class CrossingCylinders:
-    """``slowest``, ``fastest``: m/s; of each seed all cylinders are about as fast.
+    """World source with different moving cylinders for each seed.
 
-    There are ``fewest`` to ``most``, each with a way from side to side of so many straight ``legs``.
+    Attributes:
+        min_speed: Lowest speed [m/s]; all cylinders of a seed have about the same.
+        max_speed: Highest speed [m/s].
+        min_count: Smallest number of cylinders.
+        max_count: Largest number of cylinders.
+        legs: Straight segments of each trajectory.
     """
 
     min_speed: float = MIN_SPEED
@@ -71,18 +77,18 @@ def _walls() -> List[Body]:
 
 
 def _waypoints(legs: int, rng: np.random.Generator) -> np.ndarray:
-    """From somewhere on one side, in so many straight legs, to somewhere on the other, (legs + 1, 2)."""
-    max_count = HALF - 2.0 * RADIUS
-    along = rng.uniform(-max_count, max_count, 2)
-    across = np.array([-max_count, max_count])
+    """Random corners (legs + 1, 2) of a trajectory from one side of the area to the opposite one."""
+    limit = HALF - 2.0 * RADIUS
+    along = rng.uniform(-limit, limit, 2)
+    across = np.array([-limit, limit])
     ends_xy = np.column_stack((along, across) if rng.random() < 0.7 else (across, along))
-    return np.vstack((ends_xy[:1], rng.uniform(-max_count, max_count, (legs - 1, 2)), ends_xy[1:]))
+    return np.vstack((ends_xy[:1], rng.uniform(-limit, limit, (legs - 1, 2)), ends_xy[1:]))
 
 
 def _trajectory(
     link: str, waypoints_xy: np.ndarray, speed: float, rng: np.random.Generator
 ) -> ScriptedTrajectory:
-    """There and back for ever, begun anywhere on the way."""
+    """Back and forth along the waypoints, from a random phase."""
     arrival_times = (
         np.concatenate(([0.0], np.linalg.norm(np.diff(waypoints_xy, axis=0), axis=1).cumsum())) / speed
     )
@@ -99,8 +105,8 @@ def _trajectory(
 
 
 def read_crossings(table: Table, folder: Path) -> CrossingCylinders:
-    """``crossings``: the least and the greatest ``speed``, m/s; perhaps how many ``cylinders`` at least and
-    at most, and the ``legs`` of their ways.
+    """Read the table ``crossings``: ``speed`` [min, max] in m/s, and optionally ``cylinders`` [min, max] and
+    ``legs``.
     """
     table.allow_only("crossings")
     part = table.table("crossings")

@@ -1,4 +1,4 @@
-"""A floor plan: a rectangle cut into rooms, each cut a wall with a door, so that all rooms are connected."""
+"""Random floor plans: a rectangle is split recursively by walls with doors, so all rooms are connected."""
 
 import math
 from dataclasses import dataclass
@@ -6,8 +6,8 @@ from typing import List, NamedTuple, Tuple
 
 import numpy as np
 
-# Metres: of the least room, of a door, of the wall that stays on either side of it; square metres: of a room
-# that is never, and of one that is always cut.
+# Metres: smallest side of a room, width of a door, wall on either side of a door; square metres: a room is
+# never split below the first area, and always above the second.
 SMALLEST_SIDE, DOOR_WIDTH, DOOR_MARGIN = 2.4, 1.1, 0.5
 MIN_SPLIT_AREA, MAX_ROOM_AREA = 12.0, 30.0
 THICKNESS = 0.12
@@ -15,7 +15,7 @@ THICKNESS = 0.12
 
 @dataclass(frozen=True)
 class Rectangle:
-    """From x, y to x + width, y + depth; metres. Walls and furniture are told so too."""
+    """Rectangle from (x, y) to (x + width, y + depth) [m]: a room, a wall or a piece of furniture."""
 
     x: float
     y: float
@@ -32,18 +32,18 @@ class Rectangle:
 
     @property
     def corners(self) -> Tuple[float, float, float, float]:
-        """x, y of the least, x, y of the greatest."""
+        """Minimum x and y, maximum x and y."""
         return self.x, self.y, self.x + self.width, self.y + self.depth
 
     def distance_to(self, x: float, y: float) -> float:
-        """Metres from a place; 0 within."""
+        """Return the distance to a point [m]; 0 inside."""
         off_x = max(self.x - x, x - self.x - self.width, 0.0)
         return math.hypot(off_x, max(self.y - y, y - self.y - self.depth, 0.0))
 
 
 @dataclass(frozen=True)
 class WallSegment:
-    """A straight piece from one end to the other."""
+    """Centre line of an axis-aligned wall."""
 
     x1: float
     y1: float
@@ -56,7 +56,7 @@ class WallSegment:
 
     @property
     def solid(self) -> Rectangle:
-        """What it takes up."""
+        """The rectangle it occupies."""
         half = THICKNESS / 2.0
         return Rectangle(
             self.x1 - half, self.y1 - half, self.x2 - self.x1 + THICKNESS, self.y2 - self.y1 + THICKNESS
@@ -64,7 +64,13 @@ class WallSegment:
 
 
 class FloorPlan(NamedTuple):
-    """``walls``: those outside among them; ``doorways``: what walls leave open."""
+    """Rooms of one floor.
+
+    Attributes:
+        rooms: Rooms.
+        walls: Walls, including the outer ones.
+        doorways: Gaps between walls.
+    """
 
     rooms: List[Rectangle]
     walls: List[WallSegment]
@@ -72,18 +78,18 @@ class FloorPlan(NamedTuple):
 
     @property
     def solids(self) -> List[Rectangle]:
-        """What its walls take up."""
+        """The rectangles occupied by its walls."""
         return [wall.solid for wall in self.walls]
 
     def add_with_door(self, wall: WallSegment, rng: np.random.Generator) -> None:
-        """A wall with a door somewhere in it."""
+        """Add a wall with a door at a random position."""
         doorway, *pieces = _with_door(wall, rng)
         self.doorways.append(doorway)
         self.walls.extend(pieces)
 
 
 def outer_walls(room: Rectangle) -> List[WallSegment]:
-    """Its four sides."""
+    """Return walls along the four sides of a rectangle."""
     x, y, right, top = room.corners
     return [
         WallSegment(x, y, right, y),
@@ -94,7 +100,7 @@ def outer_walls(room: Rectangle) -> List[WallSegment]:
 
 
 def generate_floor_plan(outline: Rectangle, rng: np.random.Generator) -> FloorPlan:
-    """A rectangle cut again and again."""
+    """Generate a floor plan by splitting the outline recursively."""
     floor = FloorPlan([], outer_walls(outline), [])
     pending = [outline]
     while pending:
@@ -109,7 +115,7 @@ def generate_floor_plan(outline: Rectangle, rng: np.random.Generator) -> FloorPl
 
 
 def _blocks(wall: WallSegment, door: WallSegment) -> bool:
-    """Whether a wall would end in a door, or too near to it."""
+    """Whether a wall would end in a door, or too close to it."""
     return any(
         door.x1 - DOOR_MARGIN <= x <= door.x2 + DOOR_MARGIN
         and door.y1 - DOOR_MARGIN <= y <= door.y2 + DOOR_MARGIN
@@ -125,7 +131,7 @@ def _is_split(room: Rectangle, rng: np.random.Generator) -> bool:
 
 
 def _split(room: Rectangle, rng: np.random.Generator) -> Tuple[Rectangle, Rectangle, WallSegment]:
-    """Across its longer side."""
+    """Split a room across its longer side."""
     longer = max(room.width, room.depth)
     at = rng.uniform(max(SMALLEST_SIDE, 0.35 * longer), min(longer - SMALLEST_SIDE, 0.65 * longer))
     if room.width >= room.depth:
@@ -144,7 +150,7 @@ def _split(room: Rectangle, rng: np.random.Generator) -> Tuple[Rectangle, Rectan
 
 
 def _with_door(wall: WallSegment, rng: np.random.Generator) -> List[WallSegment]:
-    """A door, and the two pieces beside it."""
+    """The doorway, and the two parts of the wall beside it."""
     start = rng.uniform(DOOR_MARGIN, wall.length - DOOR_MARGIN - DOOR_WIDTH)
     along = np.array([wall.x2 - wall.x1, wall.y2 - wall.y1]) / wall.length
     (x1, y1), (x2, y2) = ((wall.x1, wall.y1) + along * at for at in (start, start + DOOR_WIDTH))

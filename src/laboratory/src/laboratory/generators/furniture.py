@@ -1,4 +1,4 @@
-"""Furniture put into a floor plan piece by piece, so that nothing is cut off by it."""
+"""Placement of furniture that keeps all free space reachable."""
 
 from dataclasses import dataclass
 from typing import Callable, List, Sequence, Tuple
@@ -9,16 +9,25 @@ from laboratory.generators.floor_plan import THICKNESS, Rectangle
 from laboratory.generators.raster import RESOLUTION, Raster
 from laboratory.tasks.shortest_paths import PASSAGE_CLEARANCE
 
-# Metres from a robot's middle to what is solid where it stands.
+# Distance from the centre of a standing robot to obstacles [m].
 STANDING_CLEARANCE = 0.55
-# Half of what the raster takes for wide enough to pass: it tells distances up to a cell too large.
+# Half of the passage width in the raster, whose distances are up to one cell too large [m].
 PASSAGE_RADIUS = PASSAGE_CLEARANCE + RESOLUTION
-# How often a place is looked for, for each piece.
+# Positions tried for each piece.
 MAX_ATTEMPTS = 4
 
 
 class Furniture:
-    """The ``pieces`` that stand between ``solids``; ``start``: where the robot begins and needs room."""
+    """Furniture of a building.
+
+    Args:
+        outline: Outline of the building.
+        solids: Rectangles that are occupied by walls.
+        start: Start position of the robot, which stays free.
+
+    Attributes:
+        pieces: Rectangles of the placed furniture.
+    """
 
     def __init__(self, outline: Rectangle, solids: Sequence[Rectangle], start: Tuple[float, float]):
         self.pieces: List[Rectangle] = []
@@ -29,7 +38,7 @@ class Furniture:
         self._reachable = self._raster.reachable_from(*start, PASSAGE_RADIUS)
 
     def place(self, piece: Rectangle) -> bool:
-        """Puts it there, and tells whether; not where the robot starts, nor where it cuts anything off."""
+        """Place a piece unless it blocks the start or cuts off free space; return whether it was placed."""
         if piece.distance_to(*self._start) < STANDING_CLEARANCE + 2.0 * RESOLUTION:
             return False
         candidate, blocked = self._raster.copy(), self._raster.copy()
@@ -37,7 +46,7 @@ class Furniture:
         candidate.fill(x1, y1, x2, y2)
         blocked.fill(x1 - PASSAGE_RADIUS, y1 - PASSAGE_RADIUS, x2 + PASSAGE_RADIUS, y2 + PASSAGE_RADIUS)
         still_reachable = candidate.reachable_from(*self._start, PASSAGE_RADIUS)
-        # Its own place and what is too near to it are lost; more would be a corner that is cut off.
+        # Only the piece and the margin around it may become unreachable.
         if not still_reachable.any() or (self._reachable & ~still_reachable & ~blocked.solid).any():
             return False
         self.pieces.append(piece)
@@ -47,7 +56,7 @@ class Furniture:
     def fill(
         self, room: Rectangle, area_of_a_piece: float, draw_piece: Callable[[Rectangle], Rectangle]
     ) -> None:
-        """Puts pieces into a room, each as ``drawn`` for it, one for so many square metres if they fit."""
+        """Try to place one piece for every ``area_of_a_piece`` square metres of a room."""
         remaining = int(room.area / area_of_a_piece)
         for _ in range(MAX_ATTEMPTS * remaining):
             if remaining:
@@ -56,7 +65,14 @@ class Furniture:
 
 @dataclass(frozen=True)
 class FurnitureStyle:
-    """Least and greatest length of either side of a piece, metres; shares that stand at walls along x, y."""
+    """Random size and position of a kind of furniture.
+
+    Attributes:
+        widths: Minimum and maximum extent in x [m].
+        depths: Minimum and maximum extent in y [m].
+        along_x: Share of pieces that stand at a wall along x.
+        along_y: Share of pieces that stand at a wall along y.
+    """
 
     widths: Tuple[float, float]
     depths: Tuple[float, float]
@@ -64,11 +80,9 @@ class FurnitureStyle:
     along_y: float = 0.4
 
     def piece(self, room: Rectangle, rng: np.random.Generator) -> Rectangle:
-        """One in a room, no side longer than half of the room's."""
+        """Draw a piece in a room, no side longer than half of the room's."""
         sides = zip((self.widths, self.depths), (room.width, room.depth))
-        width, depth = (
-            float(rng.uniform(min_area, min(most, side / 2.0))) for (min_area, most), side in sides
-        )
+        width, depth = (float(rng.uniform(low, min(high, side / 2.0))) for (low, high), side in sides)
         gap = THICKNESS / 2.0
         x = float(rng.uniform(room.x + gap, room.x + room.width - width - gap))
         y = float(rng.uniform(room.y + gap, room.y + room.depth - depth - gap))

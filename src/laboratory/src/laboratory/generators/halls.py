@@ -1,4 +1,4 @@
-"""Halls: one big room with rows of shelves, or with pillars, and pallets about."""
+"""Generated halls: one large room with shelves or pillars, and pallets."""
 
 import math
 from dataclasses import dataclass
@@ -11,20 +11,19 @@ from laboratory.generators.floor_plan import Rectangle, outer_walls
 from laboratory.generators.furniture import Furniture, FurnitureStyle
 
 AREAS = 80.0, 800.0
-# Metres, the least and the most: width of an aisle, depth and length of a row of shelves; side of a pillar,
-# and from one to the next.
+# Ranges [m]: width of an aisle, depth and length of a shelf, side of a pillar, gap between two pillars.
 AISLE_WIDTH, SHELF_DEPTH, SHELF_LENGTH = (1.6, 2.6), (0.5, 1.2), (3.0, 8.0)
 PILLAR_SIDE, PILLAR_GAP = (0.3, 0.6), (2.0, 4.0)
-# The share of halls with shelves.
+# Share of halls with shelves.
 SHELVES_SHARE = 0.6
 PALLET, AREA_OF_A_PALLET = FurnitureStyle((0.8, 1.2), (0.8, 1.2), 0.3, 0.3), 40.0
-# Metres from where the robot starts to walls, shelves and pillars.
+# Distance from the start position to walls, shelves and pillars [m].
 START_CLEARANCE = 0.7
 
 
 @dataclass(frozen=True)
 class Halls(BuildingGenerator):
-    """What a warehouse or a garage is to a robot."""
+    """Warehouses and parking garages."""
 
     kind, stream, areas = "hall", 48, AREAS
     min_area: float = AREAS[0]
@@ -42,7 +41,7 @@ class Halls(BuildingGenerator):
 
 
 def _shelves(hall: Rectangle, rng: np.random.Generator) -> List[Rectangle]:
-    """Rows along x with aisles between them, all broken at the same places."""
+    """Rows of shelves along x, separated by aisles in both directions."""
     aisle, shelf_depth, shelf_length = (
         float(rng.uniform(*size)) for size in (AISLE_WIDTH, SHELF_DEPTH, SHELF_LENGTH)
     )
@@ -61,14 +60,14 @@ def _pillars(hall: Rectangle, rng: np.random.Generator) -> List[Rectangle]:
 
 
 def _evenly_spaced(length: float, size: float, gap: float) -> List[float]:
-    """Where pieces of a size begin that stand evenly along a length, that far from each other at least."""
+    """Start coordinates of evenly spaced pieces along a length, with at least ``gap`` between them."""
     count = max(int((length - gap) / (size + gap)), 1)
     step = (length - count * size) / (count + 1) + size
     return [step * number - size for number in range(1, count + 1)]
 
 
 def _start(hall: Rectangle, obstacles: Sequence[Rectangle], rng: np.random.Generator) -> Tuple[float, float]:
-    """Somewhere off the walls and what stands there."""
+    """A random position away from walls and obstacles."""
     while True:
         x, y = (
             float(rng.uniform(START_CLEARANCE, side - START_CLEARANCE)) for side in (hall.width, hall.depth)

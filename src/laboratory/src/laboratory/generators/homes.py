@@ -1,4 +1,4 @@
-"""Homes: rooms with doors and furniture."""
+"""Generated homes: rooms with doors and furniture."""
 
 import math
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ PIECE, AREA_OF_A_PIECE = FurnitureStyle((0.4, 1.8), (0.4, 1.8)), 5.0
 
 @dataclass(frozen=True)
 class Homes(BuildingGenerator):
-    """Rectangles cut into rooms that doors connect."""
+    """Rectangles split into rooms that are connected by doors."""
 
     kind, stream, areas = "home", 42, AREAS
     min_area: float = AREAS[0]

@@ -1,4 +1,4 @@
-"""Offices: a corridor with rooms on both sides, and desks."""
+"""Generated offices: a corridor with rooms on both sides, and desks."""
 
 from dataclasses import dataclass
 
@@ -9,11 +9,11 @@ from laboratory.generators.floor_plan import FloorPlan, Rectangle, WallSegment, 
 from laboratory.generators.furniture import Furniture, FurnitureStyle
 
 AREAS = 60.0, 400.0
-# Metres, the least and the most: width of the corridor, depth and width of the rooms beside it.
+# Ranges [m]: width of the corridor, depth and width of the rooms.
 CORRIDOR_WIDTH, ROOM_DEPTH, ROOM_WIDTH = (1.6, 2.4), (3.2, 4.8), (3.0, 4.5)
-# The share of walls between two rooms that have a door, so that there are two ways.
+# Share of walls between two rooms that have a door, which gives alternative routes.
 CONNECTING_DOOR_SHARE = 0.4
-# Desks along either axis, and chairs; one piece for so many square metres.
+# Desks along either axis, and chairs; one piece for AREA_OF_A_PIECE square metres.
 PIECES = (
     FurnitureStyle((1.2, 1.6), (0.6, 0.8)),
     FurnitureStyle((0.6, 0.8), (1.2, 1.6)),
@@ -24,7 +24,7 @@ AREA_OF_A_PIECE = 4.0
 
 @dataclass(frozen=True)
 class Offices(BuildingGenerator):
-    """One floor each; the robot starts in the corridor."""
+    """Single floors; the robot starts in the corridor."""
 
     kind, stream, areas = "office", 47, AREAS
     min_area: float = AREAS[0]
@@ -51,7 +51,7 @@ def _piece(room: Rectangle, rng: np.random.Generator) -> Rectangle:
 
 
 def _room_row(side: Rectangle, corridor: float, rng: np.random.Generator) -> FloorPlan:
-    """Rooms side by side, each with a door to the corridor, whose wall is at that ``y``; no outer walls."""
+    """A row of rooms, each with a door to the corridor, whose wall is at y = ``corridor``; no outer walls."""
     floor = FloorPlan([], [], [])
     count = max(int(side.width / rng.uniform(*ROOM_WIDTH)), 1)
     shares = rng.uniform(0.85, 1.15, count)

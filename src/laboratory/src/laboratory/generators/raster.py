@@ -1,4 +1,4 @@
-"""Where a robot can come to among boxes along the axes: quick, to try furniture by."""
+"""A coarse occupancy raster of axis-aligned rectangles, for fast reachability checks."""
 
 from typing import Tuple
 
@@ -11,7 +11,7 @@ RESOLUTION = 0.05
 
 
 class Raster:
-    """What is solid of a rectangle from the origin to ``width``, ``depth``, metres."""
+    """Occupancy of the rectangle from the origin to (``width``, ``depth``) [m]."""
 
     def __init__(self, width: float, depth: float):
         # Two cells of wall all around.
@@ -19,7 +19,7 @@ class Raster:
         self._solid[2:-2, 2:-2] = False
 
     def fill(self, x1: float, y1: float, x2: float, y2: float) -> None:
-        """Makes a rectangle solid."""
+        """Mark a rectangle as solid."""
         (row1, col1), (row2, col2) = _cell(x1, y1), _cell(x2, y2)
         self._solid[row1 : row2 + 1, col1 : col2 + 1] = True
 
@@ -30,11 +30,11 @@ class Raster:
 
     @property
     def solid(self) -> np.ndarray:
-        """Which cells are, bool (rows, cols)."""
+        """Solid cells, bool (rows, cols)."""
         return self._solid
 
     def reachable_from(self, x: float, y: float, radius: float) -> np.ndarray:
-        """The cells that the middle of a robot of that radius can come to from a place, bool (rows, cols)."""
+        """Return the cells a robot of this radius can reach from (x, y), bool (rows, cols)."""
         regions, _ = label(distance_field(self._solid, RESOLUTION) > radius)
         here = regions[_cell(x, y)]
         return regions == here if here else np.zeros_like(self._solid)

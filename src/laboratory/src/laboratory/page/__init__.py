@@ -1,4 +1,4 @@
-"""One HTML file that shows what came of suites."""
+"""HTML report of an evaluation."""
 
 from laboratory.page.page import page_html
 

@@ -1,4 +1,4 @@
-"""Worlds with runs drawn on them."""
+"""SVG maps of runs."""
 
 from collections import Counter
 from typing import List, Sequence
@@ -13,24 +13,25 @@ from run_report.map_view import map_svg
 from run_report.record import RunRecord
 from sim_bridge.views.true_map import true_map
 
-# Side of a square of the heat map, metres.
-SQUARE = 0.5
+# Cell size of the heat map [m].
+SQUARE_SIZE = 0.5
 
 
 def run_map(scenario: Scenario, result: RunResult) -> str:
-    """The world of a run, with its true way."""
+    """Draw the world of a run with its true trajectory."""
     return map_svg(RunRecord(grid=_grid(scenario.arena(result.seed), result), truth=track_of(result)))
 
 
 def heat_map(scenario: Scenario, failures: Sequence[RunResult]) -> str:
-    """Where runs of the same world ended that failed: the redder a square, the more."""
+    """Draw where failed runs of one world ended: the redder a square, the more runs."""
     ends = [(run.end_x, run.end_y) for run in failures if run.end_x is not None and run.end_y is not None]
-    squares = Counter(tuple(np.floor(np.array(end) / SQUARE).astype(int).tolist()) for end in ends)
+    squares = Counter(tuple(np.floor(np.array(end) / SQUARE_SIZE).astype(int).tolist()) for end in ends)
     most = max(squares.values())
     drawn: List[str] = []
     for (col, row), count in sorted(squares.items()):
         drawn.append(
-            f'<rect x="{col * SQUARE:g}" y="{-(row + 1) * SQUARE:g}" width="{SQUARE}" height="{SQUARE}" '
+            f'<rect x="{col * SQUARE_SIZE:g}" y="{-(row + 1) * SQUARE_SIZE:g}" '
+            f'width="{SQUARE_SIZE}" height="{SQUARE_SIZE}" '
             f'fill="var(--bad)" fill-opacity="{0.25 + 0.65 * count / most:.2f}">'
             f"<title>{count} of {len(ends)} ended here</title></rect>"
         )
@@ -39,6 +40,6 @@ def heat_map(scenario: Scenario, failures: Sequence[RunResult]) -> str:
 
 
 def _grid(arena: Arena, result: RunResult) -> OccupancyGrid:
-    """What is solid in the world of a run, also where the robot's map does not show it."""
+    """The true map of a run's world, including obstacles that the robot's map does not show."""
     _, x, y, _ = track_of(result)[0].tolist()
     return true_map(arena.world, inside=(x, y))

@@ -1,4 +1,4 @@
-"""The page: a leaderboard, what each scenario came to, where it failed, and the runs to look at."""
+"""The HTML page: leaderboard, failures with heat maps, and notable runs of each scenario."""
 
 import shlex
 from html import escape
@@ -11,21 +11,30 @@ from laboratory.statistics.comparison import Comparison, compare
 from laboratory.suites import FOLDER
 from run_report.page import document, table, tiles
 
-# Failing runs of a scenario, and worlds with a heat map, that are drawn.
+# Maximum number of failed runs and of heat maps that are drawn for a scenario.
 MAX_RUN_MAPS, MAX_HEAT_MAPS = 24, 6
-HEADS = ("planner", "runs", "success", "collisions", "time, s", "SPL", "clearance, m", "beside the first")
+HEADS = (
+    "planner",
+    "runs",
+    "success",
+    "collisions",
+    "time, s",
+    "SPL",
+    "clearance, m",
+    "compared with the first",
+)
 FIGURES = ("seconds", "spl", "clearance")
 
 
 def page_html(evaluated: Sequence[Any], version: str) -> str:
-    """The page of what has been evaluated (laboratory.evaluation.Evaluated)."""
+    """Return the HTML page of evaluated scenarios (laboratory.evaluation.EvaluatedScenario)."""
     by_name: Dict[str, List[Any]] = {}
     for each in evaluated:
         by_name.setdefault(each.scenario.name, []).append(each)
     runs = sum(len(each.results) for each in evaluated)
     won = sum(result.is_success for each in evaluated for result in each.results)
     body = [
-        "<header><h1>What was played</h1><p>Intervals hold with 95 % confidence.</p></header>",
+        "<header><h1>Evaluation</h1><p>All intervals have 95 % confidence.</p></header>",
         tiles([("scenarios", str(len(by_name))), ("runs", str(runs)), ("succeeded", str(won))]),
         tiles([("version", version)]),
     ]
@@ -33,11 +42,11 @@ def page_html(evaluated: Sequence[Any], version: str) -> str:
         body.append(_leaderboard(name, planners))
         body += [_failures(each) for each in planners]
         body += [_notable_runs(each) for each in planners]
-    return document("The laboratory", "".join(body))
+    return document("Evaluation", "".join(body))
 
 
 def comparison_text(comparison: Comparison) -> str:
-    """What a comparison says, in words."""
+    """Describe a comparison in one line."""
     if not comparison.pairs:
         return "no seeds in common"
     counts = f"+{comparison.gained} −{comparison.lost}, p {comparison.p_success:.2g}"
@@ -49,7 +58,7 @@ def comparison_text(comparison: Comparison) -> str:
 
 
 def repeat_command(scenario: Scenario, seed: int) -> str:
-    """What repeats a run."""
+    """Return the command that repeats a run."""
     is_given = scenario.file.parent == FOLDER
     words = ["./scripts/play.sh", scenario.name if is_given else str(scenario.file), "--seed", str(seed)]
     words += ["--planner", scenario.planner] if scenario.planner else []
@@ -57,15 +66,15 @@ def repeat_command(scenario: Scenario, seed: int) -> str:
 
 
 def _leaderboard(name: str, planners: Sequence[Any]) -> str:
-    """The surest success first."""
-    text = [(each, each.summary) for each in planners]
-    ranked = sorted(text, key=lambda row: -row[1].figures["success"].low)
+    """Planners sorted by the lower bound of their success rate."""
+    summaries = [(each, each.summary) for each in planners]
+    ranked = sorted(summaries, key=lambda row: -row[1].figures["success"].low)
     first = planners[0]
     rows = []
     for each, summary in ranked:
         figures = [str(summary.figures.get(figure, "")) for figure in FIGURES]
         comparison = "" if each is first else comparison_text(compare(first.results, each.results))
-        planner = each.scenario.planner or "the robot's own"
+        planner = each.scenario.planner or "default of the robot"
         success, collisions = summary.figures["success"], summary.outcomes["collision"]
         rows.append((planner, summary.runs, success, collisions, *figures, comparison))
     about = f"<p>{escape(planners[0].scenario.about)}</p>"
@@ -75,7 +84,7 @@ def _leaderboard(name: str, planners: Sequence[Any]) -> str:
 
 
 def _failures(each: Any) -> str:
-    """A heat map for each world, and each failing run with its picture and the command that repeats it."""
+    """A heat map for each world, and each failed run with its map and the command that repeats it."""
     failed = [result for result in each.results if not result.is_success]
     if not failed:
         return ""
@@ -89,20 +98,20 @@ def _failures(each: Any) -> str:
     ]
     cards = [_run(each.scenario, result) for result in drawn[:MAX_RUN_MAPS]]
     rows = [(run.seed, run.outcome, run.reason, repeat_command(each.scenario, run.seed)) for run in failed]
-    listed = table(("seed", "outcome", "why", "again"), rows)
+    listed = table(("seed", "outcome", "reason", "command"), rows)
     title = f"<h2>{escape(each.scenario.label)}: {len(failed)} of {len(each.results)} failed</h2>"
     return f'<section class="card">{title}{listed}</section>' + _card_grid(maps) + _card_grid(cards)
 
 
 def _notable_runs(each: Any) -> str:
-    """The slowest run that succeeded, and the one that came nearest to something solid."""
+    """The slowest successful run, and the one with the smallest clearance."""
     won = [result for result in each.results if result.is_success]
     chosen: List[Tuple[str, RunResult]] = []
     if won:
-        chosen.append(("the slowest success", max(won, key=lambda run: run.seconds or 0.0)))
+        chosen.append(("slowest success", max(won, key=lambda run: run.seconds or 0.0)))
     near = [result for result in won if result.clearance is not None]
     if near:
-        chosen.append(("the nearest to something", min(near, key=lambda run: run.clearance or 0.0)))
+        chosen.append(("smallest clearance", min(near, key=lambda run: run.clearance or 0.0)))
     return _card_grid([_run(each.scenario, run, f"{title}: ") for title, run in chosen])
 
 
@@ -119,6 +128,6 @@ def _card(title: str, content: str) -> str:
 
 
 def _card_grid(cards: Sequence[str]) -> str:
-    """Two cards a row."""
+    """Two cards in each row."""
     pairs = [cards[number : number + 2] for number in range(0, len(cards), 2)]
     return "".join(f'<section class="even columns">{"".join(pair)}</section>' for pair in pairs)

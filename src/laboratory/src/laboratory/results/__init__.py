@@ -1,1 +1,1 @@
-"""What runs came to: measured, kept, told."""
+"""Results of runs: measurement, storage and export."""

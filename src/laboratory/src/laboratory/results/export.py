@@ -1,4 +1,4 @@
-"""Results as tables for other programs."""
+"""Export of results as CSV and Parquet tables."""
 
 import io
 from dataclasses import asdict
@@ -11,7 +11,7 @@ from planar.files.writing import write_all_atomically
 
 
 def export(runs: Iterable[Tuple[Scenario, Sequence[RunResult]]], folder: Path) -> None:
-    """Writes results.csv and results.parquet, a row a run, without tracks. Raises FileWriteError."""
+    """Write results.csv and results.parquet: one row for each run, without tracks. Raises FileWriteError."""
     import pandas
 
     rows = [

@@ -1,4 +1,4 @@
-"""What a run came to, as it is kept."""
+"""Result of a run, as it is stored."""
 
 import hashlib
 from dataclasses import asdict, dataclass
@@ -18,7 +18,7 @@ from sim_bridge.world import World
 
 
 class RunKey(NamedTuple):
-    """What a result is of: the digest of a scenario, a seed, the version of the software."""
+    """Identity of a run: digest of the scenario, seed and version of the software."""
 
     digest: str
     seed: int
@@ -27,13 +27,33 @@ class RunKey(NamedTuple):
 
 @dataclass(frozen=True)
 class RunResult:
-    """Lengths in metres, ``seconds`` simulated; what a run has not is None.
+    """Result of a run. Field names are the columns of the stored table; values that do not apply are None.
 
-    ``way``: the shortest that there was, ``clearance``: the least between the robot's middle and anything
-    solid, ``turning``: rad turned for each metre driven, ``score``: of a benchmark. ``hash``: the same for
-    two runs only if every bit of their true trajectories is. ``track``: (N, 4) float32, thinned, as bytes.
-    ``still``: seconds without moving. ``ran_into_robot``: how many people did; what follows it is told in
-    laboratory.results.social_metrics.
+    Attributes:
+        digest: Digest of the scenario.
+        seed: Seed of the run.
+        version: Version of the software.
+        outcome: One of ``laboratory.tasks.task.OUTCOMES``.
+        reason: Why the run ended so.
+        arena: Title of the world.
+        arena_number: Number of the world; equal for seeds with the same world.
+        seconds: Simulated time [s].
+        driven: Length of the true trajectory [m].
+        way: Length of the shortest path [m].
+        clearance: Minimum distance between the robot's centre and an obstacle [m].
+        turning: Rotation per distance [rad/m].
+        localization_mean: Mean localization error [m].
+        localization_max: Maximum localization error [m].
+        score: Score of the benchmark.
+        collisions: Number of bodies the robot collided with.
+        end_x: Final x of the robot in the world frame [m].
+        end_y: Final y of the robot in the world frame [m].
+        hash: Hash of the true trajectory; equal only if every bit of it is.
+        wall_seconds: Wall-clock time [s].
+        track: Thinned true trajectory (N, 4) of stamp, x, y, yaw as float32 bytes.
+        still: Time without motion [s].
+        ran_into_robot: Number of pedestrians who touched the robot by their own fault.
+        intimate: See ``SocialMetrics``, as for the fields that follow.
     """
 
     digest: str
@@ -77,7 +97,7 @@ MAX_TRACK_POSES = 400
 def measured_result(
     trace: RunTrace, arena: Arena, arena_number: int, key: RunKey, wall_seconds: float
 ) -> RunResult:
-    """Measures a run."""
+    """Compute the result of a run from its trace."""
     track = trace.trajectory
     steps = np.diff(track, axis=0)
     driven = float(np.hypot(steps[:, 1], steps[:, 2]).sum())
@@ -109,13 +129,13 @@ def measured_result(
 
 
 def error_result(error: BaseException, key: RunKey) -> RunResult:
-    """A run that could not be played."""
+    """Return the result of a run that could not be executed."""
     text = str(error) or type(error).__name__
     return RunResult(**key._asdict(), outcome=ERROR, reason=text.splitlines()[0])
 
 
 def clearance(world: World, track: np.ndarray) -> Optional[float]:
-    """The least distance, metres, from the places of a track (N, 4) to what is solid; None if nothing is."""
+    """Return the minimum distance of a track (N, 4) to obstacles [m]; None without obstacles."""
     field = _distances(world, float(track[0, 1]), float(track[0, 2]))
     if field is None:
         return None
@@ -127,7 +147,7 @@ def clearance(world: World, track: np.ndarray) -> Optional[float]:
 
 @lru_cache(maxsize=8)
 def _distances(world: World, x: float, y: float):
-    """The true map of a world, and the distance of its cells from what is solid; None if there is nothing."""
+    """The true map of a world with its distance field; None if the world has no obstacles."""
     try:
         grid: OccupancyGrid = true_map(world, inside=(x, y))
     except WorldError:
@@ -136,12 +156,12 @@ def _distances(world: World, x: float, y: float):
 
 
 def thinned(rows: np.ndarray) -> np.ndarray:
-    """At most MOST_TRACKED rows, evenly chosen, the first and the last among them."""
+    """Return at most MAX_TRACK_POSES evenly spaced rows, including the first and the last."""
     if len(rows) <= MAX_TRACK_POSES:
         return rows
     return rows[np.linspace(0, len(rows) - 1, MAX_TRACK_POSES).round().astype(int)]
 
 
 def track_of(result: RunResult) -> np.ndarray:
-    """(N, 4) stamp, x, y, yaw."""
+    """Return the track of a result: (N, 4) stamp, x, y, yaw."""
     return np.frombuffer(result.track, dtype=np.float32).reshape(-1, 4)

@@ -1,6 +1,6 @@
-"""What people had of a robot: HuNavSim's figures (Perez-Higueras et al., 2023).
+"""Social navigation metrics of HuNavSim (Perez-Higueras et al., 2023).
 
-Distances are from middle to middle.
+Distances are from centre to centre.
 """
 
 from dataclasses import dataclass
@@ -11,18 +11,23 @@ import numpy as np
 from planar import wrap
 from sim_bridge.people.crowd import ROBOT_RADIUS, social_work
 
-# Metres: proxemics (Hall, 1966).
+# Radii of the personal spaces [m] (proxemics; Hall, 1966).
 INTIMATE, PERSONAL, SOCIAL = 0.45, 1.2, 3.6
-# m/s and rad/s below both of which a robot does not move.
+# Below both speeds [m/s, rad/s] the robot counts as standing still.
 STILL_V, STILL_OMEGA = 0.001, 0.01
 
 
 @dataclass(frozen=True)
 class SocialMetrics:
-    """Shares of the time that the nearest person was in the ``intimate``, ``personal``, ``social`` space.
+    """Social navigation metrics of a run; None if it has no pedestrians.
 
-    ``person_nearest``, ``person_distance``: the least and the mean distance to the nearest, metres.
-    ``social_work``: of the social forces between robot and people over the time, m/s.
+    Attributes:
+        intimate: Share of the time with the nearest pedestrian in the intimate space.
+        personal: The same in the personal space.
+        social: The same in the social space.
+        person_nearest: Minimum distance to the nearest pedestrian [m].
+        person_distance: Mean distance to the nearest pedestrian [m].
+        social_work: Social forces between robot and pedestrians, integrated over time [m/s].
     """
 
     intimate: Optional[float] = None
@@ -34,7 +39,12 @@ class SocialMetrics:
 
 
 def social_metrics(track: np.ndarray, people: np.ndarray) -> SocialMetrics:
-    """Of a track (T, 4) of stamp, x, y, yaw, and people (T, N, 5) as in sim_bridge.people."""
+    """Compute the metrics of a run.
+
+    Args:
+        track: (T, 4) stamp, x, y, yaw of the robot.
+        people: (T, N, 5) x, y, velocity in x and y, radius of each pedestrian.
+    """
     if len(track) < 2 or people.ndim != 3 or not people.shape[1]:
         return SocialMetrics()
     off = people[:, :, :2] - track[:, None, 1:3]
@@ -49,7 +59,7 @@ def social_metrics(track: np.ndarray, people: np.ndarray) -> SocialMetrics:
 
 
 def seconds_still(track: np.ndarray) -> float:
-    """How long a robot did not move, of its track (T, 4)."""
+    """Return the time [s] without motion of a track (T, 4)."""
     seconds = np.diff(track[:, 0])
     steps = np.diff(track[:, 1:], axis=0)
     is_still = (np.hypot(steps[:, 0], steps[:, 1]) < STILL_V * seconds) & (

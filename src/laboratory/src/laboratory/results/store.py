@@ -1,4 +1,4 @@
-"""Results in one SQLite file, each written at once; who reads it meanwhile is not in the way (WAL)."""
+"""Results in one SQLite file; write-ahead logging lets others read it during a campaign."""
 
 import sqlite3
 from contextlib import contextmanager
@@ -14,12 +14,12 @@ SCHEMA = 1
 KINDS: Dict[Any, str] = {int: "INTEGER", float: "REAL", str: "TEXT", bytes: "BLOB"}
 KINDS.update({Optional[int]: "INTEGER", Optional[float]: "REAL"})
 COLUMNS = {field.name: KINDS[field.type] for field in fields(RunResult)}
-# Seconds that another writer is waited for.
+# Seconds to wait for another writer.
 BUSY_TIMEOUT = 30.0
 
 
 class ResultStore:
-    """The results of a file, which is made if it is not there. Methods raise ResultsError."""
+    """Results in an SQLite file, which is created if it does not exist. All methods raise ResultsError."""
 
     def __init__(self, path: Path):
         self._path = path
@@ -34,7 +34,7 @@ class ResultStore:
         self._connection.close()
 
     def add(self, result: RunResult) -> None:
-        """Keeps a result; one of the same scenario, seed and version is replaced."""
+        """Store a result; replaces one of the same scenario, seed and version."""
         placeholders = ", ".join("?" * len(COLUMNS))
         with self._raising_results_error():
             columns = ", ".join(COLUMNS)
@@ -43,19 +43,19 @@ class ResultStore:
             )
 
     def completed(self, version: str) -> Set[Tuple[str, int]]:
-        """Digests and seeds of what has been played; errors are worth another try."""
+        """Return digests and seeds of completed runs; those with an error are left out, to be repeated."""
         query = "SELECT digest, seed FROM results WHERE version = ? AND outcome != ?"
         with self._raising_results_error():
             return set(self._connection.execute(query, (version, ERROR)).fetchall())
 
     def results(self, digest: str, version: str) -> List[RunResult]:
-        """Those of a scenario, in the order of their seeds."""
+        """Return the results of a scenario, ordered by seed."""
         query = f"SELECT {', '.join(COLUMNS)} FROM results WHERE digest = ? AND version = ? ORDER BY seed"
         with self._raising_results_error():
             return [RunResult(*row) for row in self._connection.execute(query, (digest, version))]
 
     def versions(self) -> List[str]:
-        """Of all results, the latest last."""
+        """Return the versions of all results, the latest last."""
         query = "SELECT version FROM results GROUP BY version ORDER BY MAX(rowid)"
         with self._raising_results_error():
             return [version for (version,) in self._connection.execute(query)]
@@ -63,14 +63,16 @@ class ResultStore:
     def _prepare(self) -> None:
         (schema,) = self._connection.execute("PRAGMA user_version").fetchone()
         if schema not in (0, SCHEMA):
-            raise ResultsError(f"{self._path}: of another version of this software (schema {schema})")
+            raise ResultsError(
+                f"{self._path}: written by another software version (schema {schema}, expected {SCHEMA}); "
+                "use another --output"
+            )
         columns = ", ".join(f"{name} {kind}" for name, kind in COLUMNS.items())
         key = "PRIMARY KEY (digest, seed, version)"
         self._connection.execute(f"CREATE TABLE IF NOT EXISTS results ({columns}, {key})")
         existing = {column[1] for column in self._connection.execute("PRAGMA table_info(results)")}
-        for name in [
-            each for each in COLUMNS if each not in existing
-        ]:  # of a file from before they were told
+        # Files of earlier versions lack the newer columns.
+        for name in [each for each in COLUMNS if each not in existing]:
             self._connection.execute(f"ALTER TABLE results ADD COLUMN {name} {COLUMNS[name]}")
         self._connection.execute(f"PRAGMA user_version = {SCHEMA}")
 
@@ -79,4 +81,4 @@ class ResultStore:
         try:
             yield
         except (sqlite3.Error, OSError) as error:
-            raise ResultsError(f"{self._path}: {error}; what is in it is whole") from None
+            raise ResultsError(f"{self._path}: {error}; results stored so far are intact") from None

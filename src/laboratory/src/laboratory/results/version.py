@@ -1,4 +1,4 @@
-"""Which software makes results: the same version, the same results."""
+"""Version of the software that computes results: equal versions give equal results."""
 
 import hashlib
 import platform
@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Sequence
 
 SOURCES = Path(__file__).resolve().parents[4]
-# What a mission in one process is made of, and the packages that compute in it.
+# Packages that compute the result of a run in one process, and third-party packages that do.
 PACKAGES = (
     *("add_markers", "amcl_lite", "home_service", "laboratory", "move_base_lite", "pick_objects"),
     *("planar", "plugin_examples", "sim_bridge", "slam_lite", "supervision"),
@@ -17,13 +17,13 @@ PACKAGES_OVER_ROS = ("home_service_msgs", "map_lite", "planar_ros", "sim_bridge_
 ENDINGS = (".py", ".yaml", ".urdf", ".xacro")
 ENDINGS_OVER_ROS = (".launch", ".msg", ".srv", ".action")
 LIBRARIES = ("numpy", "scipy", "numba", "pybullet")
-# Nodes, commands and pages change no result.
+# Folders that do not influence results.
 LEFT_OUT = ("ros", "test", "commands", "page", "statistics", "campaign", "search", "__pycache__")
 
 
 @lru_cache(maxsize=1)
 def version() -> str:
-    """Of all code and parameters that a result depends on, of Python and its numerical packages."""
+    """Return a hash of the code and parameters of a run, of Python and of the numerical packages."""
     digest = hashlib.sha256(platform.python_version().encode())
     for library in LIBRARIES:
         digest.update(f"{library} {metadata.version(library)}".encode())
@@ -33,7 +33,7 @@ def version() -> str:
 
 @lru_cache(maxsize=1)
 def version_over_ros() -> str:
-    """Of what nodes add to that."""
+    """Return a hash that also covers the nodes, launch files and message definitions."""
     digest = hashlib.sha256()
     _feed(digest, (*PACKAGES, *PACKAGES_OVER_ROS), (*ENDINGS, *ENDINGS_OVER_ROS), ("test", "__pycache__"))
     return digest.hexdigest()[:12]

@@ -1,4 +1,4 @@
-"""A scenario played by the nodes."""
+"""Run a scenario as a graph of ROS nodes."""
 
 import tempfile
 from pathlib import Path
@@ -13,7 +13,7 @@ from planar.maps.places import load_places
 
 
 def launch_scenario(options: RunOptions, scenario: Scenario, seed: int) -> int:
-    """Runs the graph until the task is done or cannot be any more; returns the exit code."""
+    """Run the graph until the mission ends; return the exit code."""
     with tempfile.TemporaryDirectory(prefix="scenario-") as folder:
         arguments = write_launch_files(scenario, seed, Path(folder))
         places = load_places(arguments["zones_file"])

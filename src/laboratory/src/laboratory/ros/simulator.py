@@ -16,5 +16,5 @@ def main():
 
 
 def _world_of(settings: BridgeSettings) -> World:
-    """``~world`` is the file of a scenario here. Raises PlanarError."""
+    """Load the scenario named by ``~world``. Raises PlanarError."""
     return read_scenario(Path(settings.world)).arena(settings.seed).world

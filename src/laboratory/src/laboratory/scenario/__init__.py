@@ -1,4 +1,4 @@
-"""Scenarios: what is played, as data."""
+"""Scenarios: world, robot, task and disturbances of a run, as data."""
 
 from laboratory.scenario.reader import read_scenario
 from laboratory.scenario.scenario import OFFICIAL, Scenario

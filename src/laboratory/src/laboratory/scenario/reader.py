@@ -1,4 +1,4 @@
-"""Scenarios out of YAML files; every mistake is told with file, line and key."""
+"""Reader of scenario files; every error names file, line and key."""
 
 from pathlib import Path
 from typing import Any, Callable, Dict, Mapping, Tuple, TypeVar
@@ -28,7 +28,7 @@ Kind = TypeVar("Kind")
 
 
 def read_scenario(path: Path) -> Scenario:
-    """The scenario of a file. Raises SettingsError."""
+    """Read a scenario file. Raises SettingsError with file, line and key."""
     table = read_table(path)
     table.allow_only(*KEYS)
     robot, start = _read_robot(_part(table, "robot", "profile", "start"))
@@ -55,7 +55,7 @@ def read_scenario(path: Path) -> Scenario:
 
 
 def _part(table: Table, key: str, *known: str) -> Any:
-    """The table of a key, which knows only these; None if it is missing."""
+    """The table of a key, which may only have the known keys; None if it is missing."""
     if key not in table:
         return None
     part = table.table(key)
@@ -64,7 +64,7 @@ def _part(table: Table, key: str, *known: str) -> Any:
 
 
 def _read_world(table: Table, folder: Path) -> WorldSource:
-    """One of ours, or the generator that a dotted name names."""
+    """An included world source, or a custom generator if a key is a dotted name."""
     part = table.table("world")
     custom = next((key for key in part if "/" in key), None)
     return (
@@ -77,7 +77,7 @@ def _read_world(table: Table, folder: Path) -> WorldSource:
 def _read_kind(
     table: Table, key: str, kinds: Mapping[str, Callable[[Table, Path], Kind]], folder: Path
 ) -> Kind:
-    """What the table of a key describes: one key of ``kinds`` says of which kind it is."""
+    """Read the table of a key with the reader whose name is one of its keys."""
     part = table.table(key)
     found = [known for known in part if known in kinds]
     if not found:
@@ -87,7 +87,7 @@ def _read_kind(
 
 
 def _read_boxes(happens: Any) -> Dict[str, Any]:
-    """How many, or where each is."""
+    """The number of boxes, or a list of their poses."""
     if happens is None or "boxes" not in happens:
         return {}
     if not isinstance(happens.value("boxes"), list):
@@ -115,7 +115,7 @@ def _read_robot(table: Any) -> Tuple[str, Pose2]:
 
 
 def _read_simulation(table: Table) -> SimulationSettings:
-    """A profile ``noise``, and single values over it."""
+    """A noise profile, and single values that override it."""
     if "simulation" not in table:
         return SimulationSettings()
     part = table.table("simulation")
@@ -141,7 +141,7 @@ def _read_planner(planner: Table) -> str:
 
 
 def _read_parameters(planner: Table, robot: str) -> Mapping[str, Any]:
-    """Of move_base, by their official names; one that it does not know is an error."""
+    """Parameters of move_base by their official names; unknown ones are an error."""
     if "parameters" not in planner:
         return {}
     values = planner.table("parameters").values()

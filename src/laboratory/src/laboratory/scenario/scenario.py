@@ -1,4 +1,4 @@
-"""What is played: a world, a robot in it, a task, what happens meanwhile, who plans, limits, seeds."""
+"""A scenario: world, robot, task, disturbances, planner, limits and seeds."""
 
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -13,17 +13,33 @@ from sim_bridge import SimulationSettings
 from sim_bridge.doorway import Door
 from sim_bridge.faults import Fault
 
-# A planner that is none of ours: the node of the official package move_base with its DWA, over ROS.
+# Name of the planner that stands for the official move_base with its DWA planner, only over ROS.
 OFFICIAL = "official"
 
 
 @dataclass(frozen=True)
 class Scenario:
-    """``file``: where it was read; ``start``: where the robot begins, of the world; ``boxes``: how many that
-    its map does not show stand about, ``boxes_at``: or where; ``doors``: how many are shut meanwhile, or
-    which and when; ``people``: who walks about; ``planner``: a
-    local one other than the robot's; ``parameters``: of move_base, over those of the robot; ``seconds``:
-    simulated ones that a run may take; ``is_over_ros``: whether nodes play it, not one process.
+    """A scenario.
+
+    Attributes:
+        name: Name of the file without its suffix.
+        file: Path of the scenario file.
+        world: Source of its worlds.
+        task: Task of the robot.
+        about: Description in one sentence.
+        robot: Name of the robot profile.
+        start: Start pose in the world frame.
+        simulation: Noise and rates of the simulation.
+        boxes: Number of boxes that are not in the map.
+        boxes_at: Poses of such boxes in the world frame.
+        doors: Number of doors that close during a run, or these doors.
+        people: Pedestrians.
+        faults: Injected faults.
+        planner: Local planner; empty: that of the robot.
+        parameters: Parameters of move_base that override those of the robot.
+        seconds: Maximum duration of a run [simulated s].
+        seeds: Seeds of an evaluation.
+        is_over_ros: Whether it runs as a graph of ROS nodes instead of in one process.
     """
 
     name: str
@@ -46,25 +62,25 @@ class Scenario:
     is_over_ros: bool = False
 
     def with_planner(self, planner: str) -> "Scenario":
-        """The same with another local planner."""
+        """Return the same scenario with another local planner."""
         return replace(self, planner=planner)
 
     def with_parameters(self, parameters: Mapping[str, Any]) -> "Scenario":
-        """The same with other parameters of move_base."""
+        """Return the same scenario with other parameters of move_base."""
         return replace(self, parameters=parameters)
 
     @property
     def label(self) -> str:
-        """Its name, who plans if that is not the robot's usual planner, and what plays it."""
+        """Name with the planner and the mode, if they are not the default."""
         name = f"{self.name} [{self.planner}]" if self.planner else self.name
         return f"{name} over ROS" if self.is_over_ros else name
 
     def digest(self) -> str:
-        """Digest of all that changes a run: see ``scenario_digest``."""
+        """Return the digest of everything that influences a run: see ``scenario_digest``."""
         return scenario_digest(self)
 
     def arena(self, seed: int) -> Arena:
-        """The world of a seed, with what stands about in it. Raises PlanarError."""
+        """Return the world of a seed with its doors, boxes and pedestrians. Raises PlanarError."""
         from laboratory.worlds.boxes import with_boxes, with_boxes_at
         from laboratory.worlds.doors import with_doors, with_doors_at
 

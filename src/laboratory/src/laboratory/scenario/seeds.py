@@ -1,4 +1,4 @@
-"""Seeds as people write them: ``7``, ``0-999``, ``0-9,20,30-39``."""
+"""Lists of seeds: ``7``, ``0-999``, ``0-9,20,30-39``."""
 
 from typing import List, Tuple
 
@@ -8,7 +8,7 @@ MAX_SEEDS = 1_000_000
 
 
 def parse_seeds(text: str) -> Tuple[int, ...]:
-    """The seeds that a text names, in its order. Raises SettingsError."""
+    """Parse a list of seeds, in its order, without duplicates. Raises SettingsError."""
     seeds: List[int] = []
     for part in text.split(","):
         first, dash, last = part.strip().partition("-")

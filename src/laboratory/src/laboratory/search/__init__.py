@@ -1,1 +1,1 @@
-"""Searches over what is played: for better parameters, and for what breaks the robot."""
+"""Searches over scenarios: parameter tuning and falsification."""

@@ -1,4 +1,4 @@
-"""A case as a scenario's file."""
+"""Scenario files of cases."""
 
 import hashlib
 import os
@@ -16,37 +16,37 @@ from sim_bridge.faults import Fault
 
 
 def scenario_text(base: Scenario, case: Case, about: str, folder: Path) -> str:
-    """The base's file with nothing happening but the case, to lie in ``folder``."""
-    told: Dict[str, Any] = yaml.safe_load(base.file.read_text(encoding="utf-8"))
-    told["about"] = about
+    """Return the text of a scenario file in ``folder``: the base scenario with this case."""
+    content: Dict[str, Any] = yaml.safe_load(base.file.read_text(encoding="utf-8"))
+    content["about"] = about
     for part in ("world", "task"):
-        told[part] = _relative_paths(folder, base.file.parent, told[part])
-    told["happens"] = happens_of(case)
+        content[part] = _relative_paths(folder, base.file.parent, content[part])
+    content["happens"] = happens_of(case)
     if case.of(NoiseProfile):
-        told["simulation"] = {**(told.get("simulation") or {}), "noise": case.of(NoiseProfile)[0].name}
+        content["simulation"] = {**(content.get("simulation") or {}), "noise": case.of(NoiseProfile)[0].name}
     if base.planner:
-        told["planner"] = {**(told.get("planner") or {}), "name": base.planner}
-    told["seeds"] = str(case.seed)
-    if not told["happens"]:
-        del told["happens"]
-    return yaml.safe_dump(told, sort_keys=False, allow_unicode=True, width=110)
+        content["planner"] = {**(content.get("planner") or {}), "name": base.planner}
+    content["seeds"] = str(case.seed)
+    if not content["happens"]:
+        del content["happens"]
+    return yaml.safe_dump(content, sort_keys=False, allow_unicode=True, width=110)
 
 
 def write_case(base: Scenario, case: Case, result: RunResult, folder: Path) -> Path:
-    """Writes it into ``folder``, named after what it is; returns the file."""
+    """Write the scenario file of a case into ``folder``; return its path."""
     about = f"Found by falsify.sh in {base.name}: {result.outcome}, {result.reason}"
-    told = scenario_text(base, case, about, folder.resolve())
-    path = folder / f"{base.name}_{result.outcome}_{hashlib.sha256(told.encode()).hexdigest()[:6]}.yaml"
-    write_atomically(path, told.encode("utf-8"))
+    text = scenario_text(base, case, about, folder.resolve())
+    path = folder / f"{base.name}_{result.outcome}_{hashlib.sha256(text.encode()).hexdigest()[:6]}.yaml"
+    write_atomically(path, text.encode("utf-8"))
     return path
 
 
 def happens_of(case: Case) -> Dict[str, Any]:
-    """As the key ``happens`` has it."""
+    """Return the disturbances of a case as the table ``happens``."""
     boxes = [{"x": box.x, "y": box.y, "yaw": box.yaw} for box in case.of(Pose2)]
     people = [
-        {"goals": [list(goal) for goal in walk.goals], "speed": walk.speed}
-        for walk in case.of(PedestrianRoute)
+        {"goals": [list(goal) for goal in route.goals], "speed": route.speed}
+        for route in case.of(PedestrianRoute)
     ]
     faults = [
         {"kind": fault.kind, "start": fault.start, "end": fault.end, "strength": fault.strength}
@@ -56,7 +56,7 @@ def happens_of(case: Case) -> Dict[str, Any]:
 
 
 def _relative_paths(folder: Path, before: Path, table: Any) -> Any:
-    """The same with names of files that lie beside another file."""
+    """Make paths relative to ``before`` relative to ``folder``."""
     if not isinstance(table, dict):
         return table
     return {

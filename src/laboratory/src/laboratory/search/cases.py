@@ -1,4 +1,4 @@
-"""What can happen to a robot, put together piece by piece: boxes, people, faults, noise."""
+"""Cases: combinations of boxes, pedestrians, faults and noise that disturb a scenario."""
 
 import math
 from dataclasses import dataclass, replace
@@ -19,14 +19,15 @@ from planar import Pose2
 from sim_bridge.faults import KINDS, Fault
 from sim_bridge.noise import DEPRECATED_PROFILES, noise_named
 
-# Simulated seconds within which a fault begins, and for how long it lasts.
+# Ranges of the start and the duration of a fault [simulated s].
 FAULT_START, FAULT_DURATION = (2.0, 20.0), (1.0, 8.0)
+# Metres per second.
 MAX_WALKING_SPEED, MIN_WALKING_SPEED = 1.4, 0.5
 SEEDS = 1000
 
 
 class NoiseProfile(NamedTuple):
-    """A profile of noise other than the usual."""
+    """A noise profile that replaces the scenario's."""
 
     name: str
 
@@ -36,16 +37,22 @@ CaseElement = Union[Pose2, PedestrianRoute, Fault, NoiseProfile]
 
 @dataclass(frozen=True)
 class Case:
-    """A scenario's seed, and what happens in it: a box for each Pose2, a person for each Walk, ..."""
+    """A seed and the disturbances of a scenario.
+
+    Attributes:
+        seed: Seed of the run.
+        elements: Boxes (Pose2), pedestrians (PedestrianRoute), faults and at most one noise profile.
+    """
 
     seed: int
     elements: Tuple[CaseElement, ...]
 
     def of(self, kind: type) -> Tuple[Any, ...]:
+        """Return the elements of one type."""
         return tuple(element for element in self.elements if isinstance(element, kind))
 
     def scenario(self, base: Scenario) -> Scenario:
-        """The base with nothing happening but this."""
+        """Return the base scenario with the disturbances of this case only."""
         noises = self.of(NoiseProfile)
         simulation = base.simulation
         if noises:
@@ -64,7 +71,14 @@ class Case:
 
 @dataclass(frozen=True)
 class CaseSpace:
-    """How many of each at most; ``noise``: whether there may be more of it."""
+    """Search space of cases.
+
+    Attributes:
+        boxes: Maximum number of boxes.
+        people: Maximum number of pedestrians.
+        faults: Maximum number of faults.
+        noise: Whether the noise profile ``high`` may be used.
+    """
 
     boxes: int = 4
     people: int = 2
@@ -72,7 +86,7 @@ class CaseSpace:
     noise: bool = True
 
     def space(self) -> Dict[str, BaseDistribution]:
-        """Shares (0 to 1) of width and height for places; what else there is to choose."""
+        """Return the distributions; positions are shares (0 to 1) of the world's width and height."""
         share = FloatDistribution(0.0, 1.0)
         space: Dict[str, BaseDistribution] = {"seed": IntDistribution(0, SEEDS - 1)}
         for number in range(self.boxes):
@@ -91,7 +105,7 @@ class CaseSpace:
         return space
 
     def case(self, base: Scenario, values: Mapping[str, Any]) -> Case:
-        """Boxes always leave a way, people do not begin beside the robot, faults can be lived through."""
+        """Make a case of sampled values: boxes leave passages, pedestrians start away from the robot."""
         elements: List[CaseElement] = [*self._boxes(base, values), *self._pedestrian_routes(base, values)]
         for number in range(self.faults):
             kind, start = values[f"fault{number}/kind"], round(values[f"fault{number}/start"], 1)
@@ -136,8 +150,8 @@ class CaseSpace:
 
 
 def _nearest_point(points_xy: np.ndarray, share: Any) -> Tuple[float, float]:
-    """The spot of some (N, 2) that is nearest to a share, each 0 to 1, of the width and height of all."""
+    """The point of some (N, 2) nearest to a share (0 to 1) of their width and height."""
     low, high = points_xy.min(axis=0), points_xy.max(axis=0)
-    wanted = low + np.asarray(share) * (high - low)
-    x, y = points_xy[int(np.argmin(np.hypot(*(points_xy - wanted).T)))].tolist()
+    target = low + np.asarray(share) * (high - low)
+    x, y = points_xy[int(np.argmin(np.hypot(*(points_xy - target).T)))].tolist()
     return round(x, 3), round(y, 3)

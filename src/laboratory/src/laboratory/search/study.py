@@ -1,4 +1,4 @@
-"""A search by ask and tell (Optuna), in batches, so that it goes the same way however many workers play."""
+"""Optuna study evaluated in batches, so that its course does not depend on the number of workers."""
 
 import warnings
 from pathlib import Path
@@ -12,16 +12,24 @@ from optuna.trial import TrialState
 
 from laboratory.errors import ResultsError
 
-# Trials that are asked for at once, and told of in the order in which they were asked for.
+# Trials sampled together; their costs are reported in the same order.
 BATCH = 8
 Values = Mapping[str, Any]
 
 
 class Study:
-    """Values of a ``space`` that make a cost low; what has been told is kept in a journal file at once.
+    """Minimization of a cost; the journal file makes it resumable.
 
-    The same name, space, seed and costs give the same values, also if it was stopped in between.
-    Raises ResultsError for a journal that cannot be used.
+    Equal name, space, seed and costs give equal values, also after an interruption.
+
+    Args:
+        journal: Journal file.
+        name: Name of the study in the journal.
+        space: Distribution of each value.
+        seed: Seed of the sampler.
+
+    Raises:
+        ResultsError: The journal cannot be used.
     """
 
     def __init__(self, journal: Path, name: str, space: Mapping[str, BaseDistribution], seed: int):
@@ -41,9 +49,12 @@ class Study:
         costs_of: Callable[[Sequence[Values]], Sequence[float]],
         is_done: Callable[[], bool] = lambda: False,
     ) -> None:
-        """Goes on until so many have been told of, or it ``is_enough`` after a batch.
+        """Evaluate batches of trials.
 
-        ``costs_of``: of the values of a batch, the lower the better.
+        Args:
+            trials: Number of trials, including those in the journal.
+            costs_of: Costs of the values of a batch.
+            is_done: Called after each batch; True ends the search.
         """
         self._fail_interrupted_trials()
         while len(self._completed_trials()) < trials and not is_done():
@@ -51,13 +62,13 @@ class Study:
             self._study.sampler = optuna.samplers.TPESampler(
                 seed=hash((self._seed, done)) % 2**32, multivariate=True, constant_liar=True
             )
-            asked = [self._study.ask(self._space) for _ in range(min(BATCH, trials - done))]
-            for trial, cost in zip(asked, costs_of([trial.params for trial in asked])):
+            batch = [self._study.ask(self._space) for _ in range(min(BATCH, trials - done))]
+            for trial, cost in zip(batch, costs_of([trial.params for trial in batch])):
                 self._study.tell(trial, cost)
 
     @property
     def best(self) -> Values:
-        """The values of the least cost so far; of equals, the first."""
+        """Values with the lowest cost; the first of equals."""
         return self._study.best_params
 
     def _completed_trials(self) -> List[Any]:

@@ -1,4 +1,4 @@
-"""Which parameters of move_base are tuned, within which bounds, and how good some values are."""
+"""Tuning of move_base parameters: search space, cost and search."""
 
 import hashlib
 import json
@@ -23,41 +23,46 @@ TUNED, RESULTS = "tuned.yaml", "results.sqlite"
 
 
 def read_space(path: Path) -> Dict[str, BaseDistribution]:
-    """Bounds of parameters, by names as ``MppiPlannerROS/safe_distance``, out of nested tables whose leaves
-    are [least, greatest]. Raises SettingsError.
+    """Read the bounds of parameters from nested tables whose leaves are [lower, upper].
+
+    Returns:
+        A distribution for each name, such as ``MppiPlannerROS/safe_distance``.
+
+    Raises:
+        SettingsError: The file is not such a table.
     """
     return dict(_bounds(read_table(path), ""))
 
 
-def _bounds(table: Table, above: str) -> Iterator[Tuple[str, BaseDistribution]]:
+def _bounds(table: Table, prefix: str) -> Iterator[Tuple[str, BaseDistribution]]:
     for key in table:
         if isinstance(table.value(key), dict):
-            yield from _bounds(table.table(key), f"{above}{key}{SEPARATOR}")
+            yield from _bounds(table.table(key), f"{prefix}{key}{SEPARATOR}")
             continue
-        low, high = table.numbers(key, "least, greatest")
+        low, high = table.numbers(key, "lower, upper")
         table.check(low < high, key, "two numbers, the lesser first")
-        yield above + key, FloatDistribution(low, high)
+        yield prefix + key, FloatDistribution(low, high)
 
 
 def nested(values: Values) -> Dict[str, Any]:
-    """As move_base's parameters are written."""
+    """Return values as nested tables of move_base parameters."""
     tables: Dict[str, Any] = {}
     for name, value in values.items():
-        *above, key = name.split(SEPARATOR)
+        *prefix, key = name.split(SEPARATOR)
         table = tables
-        for part in above:
+        for part in prefix:
             table = table.setdefault(part, {})
         table[key] = value
     return tables
 
 
 def with_values(scenario: Scenario, values: Values) -> Scenario:
-    """The scenario with these over its own parameters."""
+    """Return the scenario with these values merged over its parameters."""
     return scenario.with_parameters(merged(scenario.parameters, nested(values)))
 
 
 def cost(scenario: Scenario, results: Sequence[RunResult]) -> float:
-    """Mean simulated seconds of the runs; one that failed counts as one that used up all its time, twice."""
+    """Return the mean simulated time of the runs [s]; a failed run counts as twice the time limit."""
     seconds = [
         result.seconds if result.is_success and result.seconds is not None else 2.0 * scenario.seconds
         for result in results
@@ -66,21 +71,26 @@ def cost(scenario: Scenario, results: Sequence[RunResult]) -> float:
 
 
 def costs(evaluated: Sequence[EvaluatedScenario], count: int) -> List[float]:
-    """Of ``count`` candidates, each of which has as many of the evaluated scenarios, in turn."""
+    """Return the costs of ``count`` candidates, whose scenarios follow each other in equal numbers."""
     each = len(evaluated) // count
     groups = [evaluated[number * each : (number + 1) * each] for number in range(count)]
     return [sum(cost(one.scenario, one.results) for one in group) / each for group in groups]
 
 
 def parameter_file_text(values: Values) -> str:
-    """As a file of parameters that move_base loads."""
+    """Return values as a parameter file of move_base."""
     return yaml.safe_dump(nested(values), sort_keys=True)
 
 
 class Tuning:
-    """Looks for values of a ``space`` that make scenarios cheap, over their ``seeds``.
+    """Search for parameters that minimize the cost of scenarios.
 
-    Results and the journal are kept in ``folder``, so that it goes on where it was stopped.
+    Args:
+        scenarios: Scenarios to tune on.
+        seeds: Seeds each candidate runs with; None: those of the scenario.
+        space: Distribution of each parameter.
+        seed: Seed of the search.
+        folder: Folder of the results and the journal, from which an interrupted search continues.
     """
 
     def __init__(
@@ -94,25 +104,25 @@ class Tuning:
         self._scenarios, self._seeds, self._folder = scenarios, seeds, folder
         bounds = {name: str(each) for name, each in space.items()}
         digests = [scenario.digest() for scenario in scenarios]
-        told = json.dumps([digests, seeds, bounds, version(), seed])
-        name = hashlib.sha256(told.encode()).hexdigest()[:12]
+        key = json.dumps([digests, seeds, bounds, version(), seed])
+        name = hashlib.sha256(key.encode()).hexdigest()[:12]
         self._study = Study(folder / "search.journal", f"tune-{name}", space, seed)
-        self._tried, self._least = 0, math.inf
+        self._tried, self._min_cost = 0, math.inf
 
     def run(self, client: Any, trials: int) -> Values:
-        """The best values of so many. Raises ResultsError, WorkersError."""
+        """Return the best values of ``trials`` candidates. Raises ResultsError, WorkersError."""
         self._study.run(trials, lambda batch: self._evaluate(client, batch))
         return self._study.best
 
     def _evaluate(self, client: Any, batch: Sequence[Values]) -> List[float]:
-        """What each of a batch costs."""
+        """Run a batch of candidates; return the cost of each."""
         candidates = [with_values(each, values) for values in batch for each in self._scenarios]
         evaluation = Evaluation(candidates, self._seeds, self._folder / RESULTS)
         try:
             evaluation.run_on(client)
-            told = costs(evaluation.evaluated(), len(batch))
+            batch_costs = costs(evaluation.evaluated(), len(batch))
         finally:
             evaluation.close()
-        self._tried, self._least = self._tried + len(batch), min(self._least, *told)
-        print(f"  {self._tried} candidates played, the best costs {self._least:.2f} s")
-        return told
+        self._tried, self._min_cost = self._tried + len(batch), min(self._min_cost, *batch_costs)
+        print(f"  {self._tried} candidates run, lowest cost {self._min_cost:.2f} s")
+        return batch_costs

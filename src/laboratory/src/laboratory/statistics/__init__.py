@@ -1,1 +1,1 @@
-"""What results prove, and what they do not."""
+"""Statistics of results: confidence intervals, tests and requirements."""

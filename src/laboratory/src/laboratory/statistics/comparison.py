@@ -1,4 +1,4 @@
-"""Two planners, or two versions, on the same seeds."""
+"""Paired comparison of two planners or two versions on the same seeds."""
 
 from dataclasses import dataclass
 from typing import Dict, Optional, Sequence
@@ -10,16 +10,20 @@ from statsmodels.stats.contingency_tables import mcnemar
 from laboratory.results.result import RunResult
 from laboratory.statistics.summary import CONFIDENCE, ConfidenceInterval, mean
 
-BETTER, WORSE, NOT_SIGNIFICANT = "better", "worse", "cannot tell"
+BETTER, WORSE, UNDECIDED = "better", "worse", "undecided"
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """What the second of two does to the first, on the ``pairs`` of seeds that both have played.
+    """Comparison of the second of two sets of runs with the first, on the seeds of both.
 
-    ``gained``, ``lost``: seeds that only the second, only the first brought to success; ``p_success``: of
-    McNemar's exact test. ``seconds``: how much longer the second took where both succeeded, ``p_seconds``: of
-    Wilcoxon's signed-rank test; None if there is nothing to compare.
+    Attributes:
+        pairs: Number of seeds in common.
+        gained: Seeds on which only the second succeeded.
+        lost: Seeds on which only the first succeeded.
+        p_success: p-value of McNemar's exact test.
+        seconds: Mean additional time [s] of the second where both succeeded; None if there is no difference.
+        p_seconds: p-value of Wilcoxon's signed-rank test of the times.
     """
 
     pairs: int
@@ -31,19 +35,19 @@ class Comparison:
 
     @property
     def success(self) -> str:
-        """The verdict on success."""
+        """Better, worse or undecided in success."""
         return _verdict(self.p_success, self.gained - self.lost)
 
     @property
     def time(self) -> str:
-        """The verdict on the time taken."""
+        """Better, worse or undecided in time."""
         if self.seconds is None or self.p_seconds is None:
-            return NOT_SIGNIFICANT
+            return UNDECIDED
         return _verdict(self.p_seconds, -self.seconds.value)
 
 
 def compare(first: Sequence[RunResult], second: Sequence[RunResult]) -> Comparison:
-    """Pairs runs by their seeds."""
+    """Compare the runs of two planners or versions, paired by seed."""
     of_second: Dict[int, RunResult] = {run.seed: run for run in second}
     pairs = [(run, of_second[run.seed]) for run in first if run.seed in of_second]
     table = np.zeros((2, 2), dtype=int)
@@ -60,5 +64,5 @@ def compare(first: Sequence[RunResult], second: Sequence[RunResult]) -> Comparis
 
 def _verdict(p: float, gain: float) -> str:
     if p > 1.0 - CONFIDENCE or gain == 0:
-        return NOT_SIGNIFICANT
+        return UNDECIDED
     return BETTER if gain > 0 else WORSE

@@ -1,4 +1,4 @@
-"""What has to hold: ``success >= 0.99``."""
+"""Requirements on the figures of a scenario, such as ``success >= 0.99``."""
 
 import operator
 import re
@@ -13,14 +13,14 @@ FORM = re.compile(r"\s*(\w+)\s*(>=|<=|>|<)\s*([0-9.eE+-]+)\s*")
 
 
 class Requirement(NamedTuple):
-    """A figure, how it must be, to what."""
+    """A figure, a relation and a limit."""
 
     figure: str
     relation: str
     limit: float
 
     def is_met(self, figures: Mapping[str, ConfidenceInterval]) -> bool:
-        """Whether the figure is so; one that is not there is not."""
+        """Return whether the figure satisfies the requirement; a missing figure does not."""
         found = figures.get(self.figure)
         return found is not None and bool(RELATIONS[self.relation](found.value, self.limit))
 
@@ -29,15 +29,15 @@ class Requirement(NamedTuple):
 
 
 def parse_requirement(text: str) -> Requirement:
-    """Raises SettingsError."""
+    """Parse a requirement. Raises SettingsError."""
     match = FORM.fullmatch(text)
     try:
         figure, relation, limit = match.groups() if match else ("", "", "")
-        wanted = Requirement(figure, relation, float(limit))
+        requirement = Requirement(figure, relation, float(limit))
     except ValueError:
         raise SettingsError(f'--require must be like "success >= 0.99", got {text!r}') from None
-    if wanted.figure not in FIGURES:
+    if requirement.figure not in FIGURES:
         raise SettingsError(
-            f"--require: {wanted.figure} is not known{hint_or_choices(wanted.figure, FIGURES)}"
+            f"--require: {requirement.figure} is not known{hint_or_choices(requirement.figure, FIGURES)}"
         )
-    return wanted
+    return requirement

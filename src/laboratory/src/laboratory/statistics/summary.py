@@ -1,4 +1,4 @@
-"""The figures of a scenario, with how sure they are."""
+"""Figures of a scenario with their confidence intervals."""
 
 from dataclasses import dataclass
 from operator import attrgetter
@@ -11,19 +11,19 @@ from statsmodels.stats.proportion import proportion_confint
 from laboratory.results.result import RunResult
 from laboratory.tasks.task import COLLISION, ERROR, FAILURE, OUTCOMES, TIMEOUT
 
-# Of intervals; and how often bootstrap draws, from which seed, how many at a time.
+# Confidence of all intervals; resamples, seed and batch size of the bootstrap.
 CONFIDENCE = 0.95
 RESAMPLES, SEED, BATCH = 4000, 0, 50
 
-# Means, where there are people.
-OF_PEOPLE = (
+# Figures of scenarios with pedestrians; all are means.
+PEDESTRIAN_FIGURES = (
     *("ran_into_robot", "intimate", "personal", "social", "person_nearest", "person_distance"),
     "social_work",
 )
 
 
 class ConfidenceInterval(NamedTuple):
-    """A figure and the interval that holds it with 95 % confidence; all the same if they cannot differ."""
+    """A figure with its 95 % confidence interval."""
 
     value: float
     low: float
@@ -35,8 +35,13 @@ class ConfidenceInterval(NamedTuple):
 
 @dataclass(frozen=True)
 class Summary:
-    """``figures``: by their names, those that there are: success, collision, timeout, failure and error are
-    shares of the runs; seconds, driven, spl, score, clearance, turning and localization are means.
+    """Figures of the runs of a scenario.
+
+    Attributes:
+        runs: Number of runs.
+        outcomes: Number of runs by outcome.
+        figures: Figures by name: success, collision, timeout, failure and error are shares of the runs, all
+            others are means.
     """
 
     runs: int
@@ -45,7 +50,7 @@ class Summary:
 
 
 def summary(results: Sequence[RunResult]) -> Summary:
-    """Of the runs of a scenario. Times and ways are those of the runs that succeeded."""
+    """Summarize the runs of a scenario; times and path lengths are those of successful runs."""
     outcomes = {name: sum(result.outcome == name for result in results) for name in OUTCOMES}
     figures = {name: share(count, len(results)) for name, count in outcomes.items()}
     won = [result for result in results if result.is_success]
@@ -58,25 +63,25 @@ def summary(results: Sequence[RunResult]) -> Summary:
         ("turning", won, lambda run: run.turning),
         ("localization", results, lambda run: run.localization_mean),
         ("still", won, lambda run: run.still),
-        *((name, results, attrgetter(name)) for name in OF_PEOPLE),
+        *((name, results, attrgetter(name)) for name in PEDESTRIAN_FIGURES),
     ]
     for name, of, values in rows:
-        known = _known(of, values)
-        if known:
-            figures[name] = mean(known)
+        values_present = _without_none(of, values)
+        if values_present:
+            figures[name] = mean(values_present)
     return Summary(len(results), outcomes, figures)
 
 
-# What can be told of runs, and asked for by --require.
+# All figures, which --require accepts.
 FIGURES = (
     *("success", COLLISION, TIMEOUT, FAILURE, ERROR),
     *("seconds", "driven", "spl", "score", "clearance", "turning", "localization", "still"),
-    *OF_PEOPLE,
+    *PEDESTRIAN_FIGURES,
 )
 
 
 def share(count: int, total: int) -> ConfidenceInterval:
-    """Wilson's interval (Wilson, 1927)."""
+    """Return a proportion with Wilson's interval (Wilson, 1927)."""
     if total == 0:
         return ConfidenceInterval(float("nan"), 0.0, 1.0)
     low, high = proportion_confint(count, total, alpha=1.0 - CONFIDENCE, method="wilson")
@@ -84,7 +89,7 @@ def share(count: int, total: int) -> ConfidenceInterval:
 
 
 def mean(values: Sequence[float]) -> ConfidenceInterval:
-    """With the percentile interval of a seeded bootstrap (Efron, 1979)."""
+    """Return a mean with the percentile interval of a seeded bootstrap (Efron, 1979)."""
     sample = np.asarray(values, dtype=float)
     middle = float(sample.mean())
     if len(sample) < 2 or np.ptp(sample) == 0.0:
@@ -102,11 +107,11 @@ def mean(values: Sequence[float]) -> ConfidenceInterval:
 
 
 def success_weighted_by_path_length(run: RunResult) -> Optional[float]:
-    """Success weighted by the length of the way (SPL; Anderson et al., 2018)."""
+    """Success weighted by path length (SPL; Anderson et al., 2018)."""
     if run.way is None or run.driven is None:
         return None
     return run.is_success * run.way / max(run.way, run.driven)
 
 
-def _known(results: Sequence[RunResult], value: Callable[[RunResult], Optional[float]]) -> List[float]:
+def _without_none(results: Sequence[RunResult], value: Callable[[RunResult], Optional[float]]) -> List[float]:
     return [found for found in map(value, results) if found is not None]

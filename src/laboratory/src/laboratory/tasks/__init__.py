@@ -1,1 +1,1 @@
-"""What robots have to do."""
+"""Tasks of scenarios."""

@@ -28,7 +28,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class DeliveryTask:
-    """``zones``: the errand between its pick-up and its drop-off; with a ``mission`` that instead."""
+    """The errand or a mission in a given home.
+
+    Attributes:
+        zones: File of the zones; without a mission the errand goes from the pick-up to the drop-off zone.
+        mission: File of the mission; None: the errand.
+    """
 
     zones: Path
     mission: Optional[Path] = None
@@ -46,7 +51,7 @@ class DeliveryTask:
         return [pose for place in places for pose in place.poses]
 
     def reference_length(self, scenario: "Scenario", arena: Arena) -> Optional[float]:
-        """Of the errand; in which order a mission is best carried out is not known here."""
+        """Return the shortest path of the errand [m]; None for a mission, whose best order is not known."""
         if self.mission is not None:
             return None
         robot = EpisodeConditions(parameters=scenario.parameters).navigation(NAVIGATION_CONFIG)
@@ -75,7 +80,18 @@ class DeliveryTask:
 def run_mission(
     scenario: "Scenario", arena: Arena, seed: int, mission: Mission, parcel: Optional[CarriedParcel] = None
 ) -> RunTrace:
-    """Carries it out; ``parcel``: the marker of an errand. Raises PlanarError."""
+    """Run a mission headless, with the conditions of a scenario.
+
+    Args:
+        scenario: Scenario with robot, faults, noise and parameters.
+        arena: World and map.
+        seed: Seed of the run.
+        mission: Mission to carry out.
+        parcel: Marker of the errand; None for other missions.
+
+    Raises:
+        PlanarError: The mission cannot be run.
+    """
     inputs = (arena.world, robot_named(scenario.robot), _grid_of(arena), mission)
     episode = HeadlessMission(*inputs, seed=seed, parcel=parcel, conditions=_conditions(scenario))
     run = episode.run(scenario.seconds)
@@ -98,7 +114,7 @@ def _conditions(scenario: "Scenario") -> EpisodeConditions:
 
 def _grid_of(arena: Arena) -> OccupancyGrid:
     if arena.grid is None:
-        raise SettingsError(f"{arena.title}: deliveries need a world with a map")
+        raise SettingsError(f"{arena.title}: the task needs a world with a map")
     return arena.grid
 
 
@@ -111,18 +127,18 @@ def _outcome(run: EpisodeResult, seconds: float) -> str:
 
 
 def _reason(run: EpisodeResult) -> str:
-    """That of the verdict; and what it collided with, if that was not the end of it."""
-    collisions, reason = collision(run.mission_record.collisions), run.verdict.reason
-    return reason if collisions is None or collisions in reason else f"{collisions}; {reason}"
+    """The reason of the verdict, preceded by a collision that it does not mention."""
+    cause, reason = collision(run.mission_record.collisions), run.verdict.reason
+    return reason if cause is None or cause in reason else f"{cause}; {reason}"
 
 
 def read_errand(table: Table, folder: Path) -> DeliveryTask:
-    """``errand``: a file of zones."""
+    """Read ``errand``: a file of zones."""
     table.allow_only("errand")
     return DeliveryTask(table.path("errand", folder))
 
 
 def read_mission(table: Table, folder: Path) -> DeliveryTask:
-    """``mission``: a file of deliveries, between places of its own and of the ``zones``."""
+    """Read ``mission``, a mission file, and the ``zones`` it refers to."""
     table.allow_only("mission", "zones")
     return DeliveryTask(table.path("zones", folder), table.path("mission", folder))

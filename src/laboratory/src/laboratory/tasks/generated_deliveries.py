@@ -23,7 +23,11 @@ _STREAM = 43
 
 @dataclass(frozen=True)
 class GeneratedDeliveryTask:
-    """``count``: deliveries, each from one of the places to another."""
+    """Random deliveries between the places of a generated building.
+
+    Attributes:
+        count: Number of deliveries.
+    """
 
     count: int = 4
 
@@ -41,37 +45,37 @@ class GeneratedDeliveryTask:
 
     def launch_files(self, arena: Arena, seed: int, folder: Path) -> Mapping[str, Path]:
         mission = self._mission(arena, seed)
-        places = {place.name: _place_as_table(place) for place in mission.places.values()}
+        places = {place.name: _place_table(place) for place in mission.places.values()}
         deliveries = [
             {"name": each.name, "object": each.object_name, "from": each.source, "to": each.destination}
             for each in mission.deliveries
         ]
         zones_file, mission_file = folder / "places.yaml", folder / "mission.yaml"
         zones_file.write_text(yaml.safe_dump(places), encoding="utf-8")
-        told = {"name": mission.name, "deliveries": deliveries}
-        mission_file.write_text(yaml.safe_dump(told, sort_keys=False), encoding="utf-8")
+        content = {"name": mission.name, "deliveries": deliveries}
+        mission_file.write_text(yaml.safe_dump(content, sort_keys=False), encoding="utf-8")
         return {"zones_file": zones_file, "mission_file": mission_file}
 
     def _mission(self, arena: Arena, seed: int) -> Mission:
         if len(arena.places) < 2:
-            raise SettingsError(f"{arena.title}: chores need a world with places")
+            raise SettingsError(f"{arena.title}: the task chores needs a world with places")
         rng = np.random.default_rng([seed, _STREAM])
         names = [place.name for place in arena.places]
         deliveries = []
         for number in range(1, self.count + 1):
             source, destination = rng.choice(names, 2, replace=False).tolist()
-            deliveries.append(Delivery(f"chore {number}", f"thing {number}", source, destination))
+            deliveries.append(Delivery(f"chore {number}", f"object {number}", source, destination))
         places = {place.name: place for place in arena.places}
         return Mission("chores", places, tuple(deliveries))
 
 
-def _place_as_table(place: NamedPlace) -> Dict[str, Any]:
-    """As a file of places has it."""
+def _place_table(place: NamedPlace) -> Dict[str, Any]:
+    """A place as an entry of a zones file."""
     pose = place.pose
     return {"x": pose.x, "y": pose.y, "yaw": pose.yaw, "radius": place.radius}
 
 
 def read_chores(table: Table, folder: Path) -> GeneratedDeliveryTask:
-    """``chores``: how many deliveries."""
+    """Read ``chores``: the number of deliveries."""
     table.allow_only("chores")
     return GeneratedDeliveryTask(table.count("chores"))

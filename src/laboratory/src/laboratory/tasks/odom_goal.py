@@ -1,4 +1,4 @@
-"""A goal ahead, without a map: as in BARN and DynaBARN, the robot plans in odom."""
+"""A goal in the odometry frame, without a map, as in BARN and DynaBARN."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -26,7 +26,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class OdomGoalTask:
-    """``goal``: seen from the start; within ``radius``, metres, of it the robot has arrived."""
+    """Reach a goal without a map.
+
+    Attributes:
+        goal: Goal pose in the frame of the start pose.
+        radius: Distance to the goal at which it counts as reached [m].
+    """
 
     goal: Pose2
     radius: float = 1.0
@@ -65,11 +70,11 @@ class OdomGoalTask:
         return ()
 
     def launch_files(self, arena: Arena, seed: int, folder: Path) -> Mapping[str, Path]:
-        raise SettingsError("the task reach is played in one process only, not over ROS")
+        raise SettingsError("the task reach runs in one process only, not over ROS")
 
 
 class _GoalDrive:
-    """A run to a goal; it ends there, at the first touch, or when the navigator gives up."""
+    """One run: it ends at the goal, at the first collision, or when navigation fails."""
 
     def __init__(self, scenario: "Scenario", arena: Arena, seed: int, task: OdomGoalTask):
         settings = EpisodeConditions(scenario.planner, scenario.parameters).navigation(
@@ -92,7 +97,7 @@ class _GoalDrive:
         self.collisions: Set[str] = set()
 
     def run(self, seconds: float) -> Tuple[str, str]:
-        """Outcome and reason; the clock starts with the goal."""
+        """Drive to the goal; return outcome and reason. The time limit [s] starts with the goal."""
         observation = self._first_scan()
         scan = observation.scan
         start_stamp = observation.stamp
@@ -106,10 +111,10 @@ class _GoalDrive:
                 return FAILURE, decision.text
             observation, scan = self._advance(decision.command)
             self._record(observation, start_stamp)
-            collisions = collision(sorted(self.collisions))
-            if collisions:
+            cause = collision(sorted(self.collisions))
+            if cause:
                 place = observation.base_in_world
-                return COLLISION, f"{collisions} at {place.x:.2f}, {place.y:.2f}"
+                return COLLISION, f"{cause} at {place.x:.2f}, {place.y:.2f}"
             if observation.base_in_world.distance_to(self._goal) <= self._task.radius:
                 return SUCCESS, "reached the goal"
         return TIMEOUT, f"not done within {seconds:g} simulated seconds"
@@ -125,7 +130,7 @@ class _GoalDrive:
                 return observation
 
     def _advance(self, command: Optional[Twist2]) -> Tuple[StepResult, Optional[Scan]]:
-        """Moves on by a control period; the last observation, and the scan made on the way."""
+        """Simulate one control period; return the last step and the scan measured during it."""
         scan = None
         for _ in range(self._steps):
             observation = self._simulation.step(command)
@@ -142,13 +147,13 @@ class _GoalDrive:
 
 
 def navigation_config(robot: str) -> Path:
-    """move_base's parameters for a robot: the file of its name, or the TurtleBot's."""
+    """Return the move_base parameter file of a robot; the TurtleBot's if it has none."""
     config = NAVIGATION_CONFIG.with_name(f"{robot}.yaml")
     return config if config.exists() else NAVIGATION_CONFIG
 
 
 def read_reach(table: Table, folder: Path) -> OdomGoalTask:
-    """``reach``: x, y and radius, seen from the start."""
+    """Read ``reach``: x, y and radius in the frame of the start pose."""
     table.allow_only("reach")
     goal = table.table("reach")
     goal.allow_only("x", "y", "yaw", "radius")

@@ -1,4 +1,4 @@
-"""Shortest ways through a map for a round robot."""
+"""Shortest paths of a circular robot on a map."""
 
 import math
 from functools import lru_cache
@@ -12,12 +12,17 @@ from planar import FREE, OccupancyGrid, Pose2
 from planar.geometry.distance_field import distance_field
 from planar.geometry.grid_graph import grid_graph
 
-# Metres from a robot's middle to what is solid, on all ways of generated buildings.
+# Minimum distance from the robot's centre to obstacles on all paths of generated buildings [m].
 PASSAGE_CLEARANCE = 0.35
 
 
 class ShortestPaths:
-    """Ways along cells whose middle is at least ``radius``, metres, from everything that is not free."""
+    """Shortest paths over cells with sufficient clearance.
+
+    Args:
+        grid: Map.
+        radius: Minimum distance of a cell's centre from cells that are not free [m].
+    """
 
     def __init__(self, grid: OccupancyGrid, radius: float):
         self._grid = grid
@@ -25,7 +30,7 @@ class ShortestPaths:
         self._graph = grid_graph(self._traversable, grid.resolution)
 
     def length(self, places: Sequence[Pose2]) -> Optional[float]:
-        """Metres from place to place, straight to the nearest open cells; None if there is no way."""
+        """Return the path length through poses in order [m]; None if one cannot be reached."""
         total = 0.0
         for start, end in zip(places, places[1:]):
             (first, to_first), (last, from_last) = (
@@ -39,7 +44,7 @@ class ShortestPaths:
         return total
 
     def _nearest_traversable(self, place: Pose2) -> Tuple[int, float]:
-        """Number of the nearest open cell, and how far its middle is."""
+        """Index of the nearest traversable cell, and the distance to its centre [m]."""
         cells = np.argwhere(self._traversable)
         distances = np.hypot(*(self._grid.points_of(cells) - (place.x, place.y)).T)
         nearest = int(np.argmin(distances))
@@ -48,11 +53,11 @@ class ShortestPaths:
 
 
 def connected_regions(grid: OccupancyGrid, radius: float) -> np.ndarray:
-    """Numbers of connected cells where the middle of a robot of that radius can be, (rows, cols); 0: none."""
+    """Label the regions a robot of this radius can traverse: int (rows, cols), 0: not traversable."""
     return label(distance_field(grid.cells != FREE, grid.resolution) > radius)[0]
 
 
 @lru_cache(maxsize=8)
 def shortest_path_length(grid: OccupancyGrid, places: Tuple[Pose2, ...], radius: float) -> Optional[float]:
-    """Metres from place to place for a robot of that radius; None if there is no way."""
+    """Return the path length through poses for a robot of this radius [m]; None if one cannot be reached."""
     return ShortestPaths(grid, radius).length(places)

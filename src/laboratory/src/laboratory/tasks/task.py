@@ -1,7 +1,7 @@
-"""The contract of a task.
+"""Contract of a task.
 
-A task is a frozen dataclass of its own file, with a function that reads it from a scenario's table ``task``,
-and one line of the registry.
+A task is a frozen dataclass in a module of this folder, with a function that reads it from the table ``task``
+of a scenario and an entry in laboratory.scenario.registry.
 """
 
 from dataclasses import dataclass, field
@@ -27,12 +27,18 @@ SUCCESS, FAILURE, COLLISION, TIMEOUT, ERROR = OUTCOMES = (
 
 @dataclass(frozen=True, eq=False)
 class RunTrace:
-    """How a run went.
+    """Recorded data of one run.
 
-    ``trajectory``: (N, 4) stamp, true x, y, yaw. ``localization_error``: (M,), metres, of a robot with a map.
-    ``touched``: names of what it bumped into. ``way``: metres of the shortest way there is.
-    ``score``: that of a benchmark. ``people``: (N, P, 5), and who of them ``ran_into_robot``: of
-    home_service.judging.pedestrian_contacts.
+    Attributes:
+        outcome: One of ``OUTCOMES``.
+        reason: Why the run ended so.
+        trajectory: (N, 4) stamp, true x, y, yaw.
+        localization_error: (M,) distances between estimated and true position [m]; empty without a map.
+        collisions: Names of the bodies the robot collided with.
+        reference_length: Length of the shortest path [m].
+        score: Score of the benchmark.
+        people: (N, P, 5) pedestrians as in ``home_service.judging.pedestrian_contacts``.
+        people_at_fault: Names of the pedestrians who touched the robot by their own fault.
     """
 
     outcome: str
@@ -47,22 +53,25 @@ class RunTrace:
 
 
 class Task(Protocol):
-    """Something to do in an arena; the same scenario and seed are played alike, to the last bit."""
+    """A task in an arena. Runs with equal scenario and seed are equal to the last bit."""
 
     def run(self, scenario: "Scenario", arena: Arena, seed: int) -> RunTrace:
-        """Plays it. Raises PlanarError if that is impossible."""
+        """Run the task. Raises PlanarError if that is impossible."""
 
     def required_poses(self, arena: Arena) -> Sequence[Pose2]:
-        """Where the robot must be able to stand."""
+        """Return poses in the world frame that must stay free of boxes and reachable."""
 
     def reference_length(self, scenario: "Scenario", arena: Arena) -> Optional[float]:
-        """Metres of the shortest way that does it, if that is known."""
+        """Return the length of the shortest path that completes the task [m], if known."""
 
     def files(self) -> Tuple[Path, ...]:
-        """What the task is read from."""
+        """Return the files the task is read from."""
 
     def launch_files(self, arena: Arena, seed: int, folder: Path) -> Mapping[str, Path]:
-        """The task as the launch files' ``zones_file`` and, if it is a mission, ``mission_file``.
+        """Return the launch arguments ``zones_file`` and, for a mission, ``mission_file``.
 
-        What is not there yet is written into ``folder``. Raises PlanarError if nodes cannot play it.
+        Files that do not exist yet are written into ``folder``.
+
+        Raises:
+            PlanarError: The task cannot be run over ROS.
         """

@@ -17,18 +17,18 @@ from sim_bridge import load_world
 
 START = Pose2(-2.25, 3.0, math.pi / 2.0)
 GOAL_IN_ODOM = Pose2(10.0, 0.0)
-# m/s, at which the reference path takes the time that runs are compared with.
+# Speed on the reference path that gives the optimal time [m/s].
 REFERENCE_SPEED = 2.0
 
 
 @dataclass(frozen=True)
 class BarnFolder:
-    """world_N.world and path_N.npy in a folder or not far below it; seeds take them by turns."""
+    """World source of a folder with world_N.world and path_N.npy; seeds use the worlds in turn."""
 
     folder: Path
 
     def pairs(self) -> Tuple[Tuple[int, Path, Path], ...]:
-        """Number, world and reference path. Raises SettingsError if there are none."""
+        """Return number, world file and reference path of each world. Raises SettingsError without any."""
         worlds = numbered_files(self.folder, "world", ".world")
         paths = numbered_files(self.folder, "path", ".npy")
         both = sorted(set(worlds) & set(paths))
@@ -53,7 +53,7 @@ def _arena(number: int, world: Path, path: Path) -> Arena:
 
 
 def _read_path(file: Path) -> np.ndarray:
-    """The cells (N, 2) of a reference path. Raises SettingsError."""
+    """Read the cells (N, 2) of a reference path. Raises SettingsError."""
     try:
         cells = read_array(file)
         if cells.ndim != 2 or cells.shape[1] != 2 or not np.isfinite(cells).all():
@@ -64,13 +64,13 @@ def _read_path(file: Path) -> np.ndarray:
 
 
 def score(seconds: float, reference_length: float) -> float:
-    """BARN's score of a run that has arrived after ``seconds``; ``way``: metres of the reference path."""
+    """Return BARN's score of a run that reached the goal after ``seconds`` [s] (reference path in [m])."""
     optimal = reference_length / REFERENCE_SPEED
     return optimal / min(max(seconds, 2.0 * optimal), 8.0 * optimal)
 
 
 def reference_length(path_cells: np.ndarray) -> float:
-    """Metres from start over the cells (N, 2) of a reference path to the goal."""
+    """Return the length of a path from the start through cells (N, 2) to the goal [m]."""
     goal = START @ GOAL_IN_ODOM
     path_xy = path_cells * 0.15 + (-4.575, 5.075)
     path_xy = np.concatenate(([[START.x, START.y]], path_xy, [[goal.x, goal.y]]))
@@ -78,7 +78,7 @@ def reference_length(path_cells: np.ndarray) -> float:
 
 
 def read_barn(table: Table, folder: Path) -> BarnFolder:
-    """``barn``: a folder beside the scenario, or anywhere."""
+    """Read ``barn``: the folder of the worlds."""
     table.allow_only("barn")
     source = BarnFolder(table.path("barn", folder))
     try:

@@ -1,4 +1,4 @@
-"""Boxes that a map does not show."""
+"""Boxes that are not in the map."""
 
 import math
 from dataclasses import replace
@@ -12,22 +12,29 @@ from planar.geometry.distance_field import distance_field
 from sim_bridge.simulation import box_on_floor
 
 SIZE = (0.35, 0.35, 0.5)
-# Metres: from a box's middle to a wall, so that a robot gets past, to another box, and to start and goals.
+# Minimum distances of a box's centre [m]: to walls, to other boxes, to start and goals.
 WALL_CLEARANCE, BOX_SPACING, GOAL_CLEARANCE = 0.75, 1.2, 1.0
 _STREAM = 41
 
 
 def with_boxes(arena: Arena, count: int, seed: int, places: Sequence[Pose2]) -> Arena:
-    """The arena with so many boxes anywhere off its walls and off ``places``.
+    """Add boxes at random positions.
 
-    Raises SettingsError if the arena has no map or no room for them.
+    Args:
+        arena: Arena with a map.
+        count: Number of boxes.
+        seed: Seed of their positions.
+        places: Poses that stay free.
+
+    Raises:
+        SettingsError: The arena has no map, or no space for so many boxes.
     """
     rng = np.random.default_rng([seed, _STREAM])
     free_xy = free_box_positions(arena, places)
     poses: List[Pose2] = []
     for number in range(count):
         if not len(free_xy):
-            raise SettingsError(f"there is room for {number} boxes only, not for {count}")
+            raise SettingsError(f"there is space for {number} boxes only, not for {count}")
         x, y = free_xy[rng.integers(len(free_xy))]
         pose = Pose2(float(x), float(y), float(rng.uniform(-math.pi, math.pi)))
         poses.append(pose)
@@ -36,13 +43,17 @@ def with_boxes(arena: Arena, count: int, seed: int, places: Sequence[Pose2]) -> 
 
 
 def with_boxes_at(arena: Arena, poses: Sequence[Pose2]) -> Arena:
-    """The arena with boxes there."""
+    """Add boxes at the given poses."""
     boxes = [box_on_floor(f"box_{number}", SIZE, pose) for number, pose in enumerate(poses)]
     return replace(arena, world=replace(arena.world, bodies=(*arena.world.bodies, *boxes)))
 
 
 def free_box_positions(arena: Arena, places: Sequence[Pose2]) -> np.ndarray:
-    """Where a box leaves a way past, off ``places``; (N, 2). Raises SettingsError without a map."""
+    """Return positions (N, 2) where a robot can pass a box, away from ``places``.
+
+    Raises:
+        SettingsError: The arena has no map.
+    """
     if arena.grid is None:
         raise SettingsError("boxes need a world with a map")
     clearance = distance_field(arena.grid.cells != FREE, arena.grid.resolution)
@@ -53,5 +64,5 @@ def free_box_positions(arena: Arena, places: Sequence[Pose2]) -> np.ndarray:
 
 
 def spaced_from(free_xy: np.ndarray, box: Pose2) -> np.ndarray:
-    """Those of some spots (N, 2) where another leaves a way between."""
+    """Return those of the positions (N, 2) where a robot can pass between ``box`` and another box."""
     return free_xy[np.hypot(*(free_xy - (box.x, box.y)).T) > BOX_SPACING]

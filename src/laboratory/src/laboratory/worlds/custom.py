@@ -1,4 +1,4 @@
-"""Worlds of other people: ``world: {my_package.my_module/MyWorlds: {rooms: 3}}`` in a scenario."""
+"""Custom world generators: ``world: {my_package.my_module/MyWorlds: {rooms: 3}}`` in a scenario."""
 
 from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
@@ -13,19 +13,24 @@ from sim_bridge import WorldError
 
 
 class WorldGenerator(Protocol):
-    """A frozen dataclass. Its fields, of numbers, texts and flags, are what a scenario may say of it."""
+    """A frozen dataclass whose fields (numbers, strings, booleans) can be set in a scenario."""
 
     def arena(self, seed: int) -> Arena:
-        """The same for the same seed; all chance comes from it."""
+        """Return the world of a seed; all random numbers come from the seed."""
         ...
 
 
-CONTRACT = PluginContract("generator of worlds", WorldGenerator, None, "laboratory.worlds")
+CONTRACT = PluginContract("world generator", WorldGenerator, None, "laboratory.worlds")
 
 
 @dataclass(frozen=True)
 class CustomWorlds:
-    """The WorldSource that other people's generator is: what goes wrong in it is told in its name."""
+    """World source of a custom generator; its exceptions become WorldErrors that name the generator.
+
+    Attributes:
+        name: Dotted name of the generator's class.
+        generator: The generator.
+    """
 
     name: str
     generator: WorldGenerator
@@ -38,11 +43,11 @@ class CustomWorlds:
         except Exception as error:
             raise WorldError(f"{self.name} raised {type(error).__name__}: {error}") from error
         if not isinstance(arena, Arena):
-            raise WorldError(f"{self.name} gave a {type(arena).__name__}, not an Arena")
+            raise WorldError(f"{self.name} returned a {type(arena).__name__}, expected an Arena")
         return arena
 
     def files(self) -> Tuple[Path, ...]:
-        """Its source: results of another one are not of the same scenario."""
+        """Return its source files: changed code makes stored results invalid."""
         return source_files((self.name,))
 
     def arena_number(self, seed: int) -> int:
@@ -50,7 +55,7 @@ class CustomWorlds:
 
 
 def read_custom_worlds(table: Table, name: str) -> CustomWorlds:
-    """Those whose dotted name is a key of a scenario's table ``world``."""
+    """Read the table of the generator with this dotted name."""
     table.allow_only(name)
     values = table.table(name)
     try:
@@ -61,7 +66,7 @@ def read_custom_worlds(table: Table, name: str) -> CustomWorlds:
         )
     except PluginError as error:
         raise table.error_at(name, f"cannot be used: {error}") from None
-    except TypeError as error:  # a field without a default that the scenario does not give
+    except TypeError as error:  # the scenario does not set a field without a default
         raise table.error_at(name, f"cannot be used: {error}") from None
     if unknown:
         values.allow_only(*(field.name for field in fields(generator_class)))
@@ -69,10 +74,10 @@ def read_custom_worlds(table: Table, name: str) -> CustomWorlds:
 
 
 def load_generator(name: str) -> type:
-    """Other people's generator of that dotted name. Raises PluginError with what it lacks."""
+    """Import a custom generator by its dotted name. Raises PluginError if it violates the contract."""
     generator_class = load_plugin(name, CONTRACT)
     if generator_class is None:
         raise PluginError("there is no such entry point of laboratory.worlds")
     if not (is_dataclass(generator_class) and generator_class.__dataclass_params__.frozen):  # type: ignore[attr-defined]
-        raise PluginError(f"{name} is no generator of worlds: it is no frozen dataclass")
+        raise PluginError(f"{name} is not a world generator: it is not a frozen dataclass")
     return generator_class

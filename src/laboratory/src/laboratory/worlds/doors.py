@@ -1,4 +1,4 @@
-"""Doors that are shut while the robot is about; its map shows all of them open."""
+"""Doors that close during a run; the map shows all of them open."""
 
 import math
 from dataclasses import replace
@@ -13,19 +13,25 @@ from planar.config.yaml_table import Table
 from planar.maps.places import parse_pose
 from sim_bridge.doorway import Door
 
-# Simulated seconds within which each is shut.
+# Range of the closing time [simulated s].
 CLOSING_TIMES = (5.0, 60.0)
 _STREAM = 49
 
 
 def with_doors(arena: Arena, max_count: int, seed: int, places: Sequence[Pose2]) -> Arena:
-    """The arena with so many of its doorways shut at some time, for good; fewer, if the others would part
-    some of the ``places`` from each other.
+    """Close doorways at random times until the end of the run.
 
-    Raises SettingsError if no doorways are known of it.
+    Args:
+        arena: Arena with a map and doorways.
+        max_count: Number of doors; fewer are closed if more would separate the places.
+        seed: Seed of the choice.
+        places: Poses that stay connected.
+
+    Raises:
+        SettingsError: The arena has no known doorways.
     """
     if arena.grid is None or not arena.doorways:
-        raise SettingsError(f"{arena.title}: doors need a generated building, or places of their own")
+        raise SettingsError(f"{arena.title}: doors need a generated building or a list of poses")
     rng = np.random.default_rng([seed, _STREAM])
     grid = arena.grid
     doors: List[Door] = []
@@ -41,7 +47,7 @@ def with_doors(arena: Arena, max_count: int, seed: int, places: Sequence[Pose2])
 
 
 def with_doors_at(arena: Arena, doors: Sequence[Door]) -> Arena:
-    """The arena with these."""
+    """Add these doors."""
     return replace(arena, world=replace(arena.world, doors=(*arena.world.doors, *doors)))
 
 
@@ -55,14 +61,14 @@ def _with_closed(grid: OccupancyGrid, door: Door) -> OccupancyGrid:
 
 
 def _are_connected(grid: OccupancyGrid, places: Sequence[Pose2]) -> bool:
-    """Whether a robot gets from each to each."""
+    """Whether the poses are connected for a robot."""
     rows, cols = grid.cells_of([(place.x, place.y) for place in places]).T
     found = set(connected_regions(grid, PASSAGE_CLEARANCE)[rows, cols].tolist())
     return len(found) == 1 and found != {0}
 
 
 def read_doors(happens: Table) -> Union[int, Tuple[Door, ...]]:
-    """``doors``: how many, or where each is and when it is shut. Raises the table's error."""
+    """Read ``doors``: their number, or a list of doors with pose and times. Raises SettingsError."""
     if "doors" not in happens:
         return 0
     if not isinstance(happens.value("doors"), list):

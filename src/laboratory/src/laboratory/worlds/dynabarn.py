@@ -19,12 +19,12 @@ from sim_bridge.world import Body, World
 
 @dataclass(frozen=True)
 class DynabarnFolder:
-    """dynabarn_N.yaml in a folder or not far below it; seeds take them by turns."""
+    """World source of a folder with dynabarn_N.yaml; seeds use the worlds in turn."""
 
     folder: Path
 
     def files(self) -> Tuple[Path, ...]:
-        """Raises SettingsError if there are none."""
+        """Return the files in the order of their numbers. Raises SettingsError without any."""
         numbered = numbered_files(self.folder, "dynabarn", ".yaml")
         if not numbered:
             raise SettingsError(f"{self.folder}: no files dynabarn_N.yaml")
@@ -68,7 +68,7 @@ def _rows(table: Table, key: str, length: int) -> np.ndarray:
 
 
 def read_dynabarn(table: Table, folder: Path) -> DynabarnFolder:
-    """``dynabarn``: a folder beside the scenario, or anywhere."""
+    """Read ``dynabarn``: the folder of the worlds."""
     table.allow_only("dynabarn")
     source = DynabarnFolder(table.path("dynabarn", folder))
     try:

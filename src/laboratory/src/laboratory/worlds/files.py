@@ -1,4 +1,4 @@
-"""A world of files: SDF and the map of it."""
+"""Worlds read from files."""
 
 import re
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ SEARCH_DEPTH = 3
 
 @dataclass(frozen=True)
 class WorldFile:
-    """The same world for all seeds."""
+    """World source of an SDF file and its map; all seeds have the same world."""
 
     world: Path
     map: Optional[Path] = None
@@ -41,19 +41,19 @@ def _arena(source: WorldFile) -> Arena:
 
 
 def read_world_file(table: Table, folder: Path) -> WorldFile:
-    """``file`` and, if the robot has one, ``map``, both beside the scenario."""
+    """Read ``file``, an SDF world, and the optional ``map``."""
     table.allow_only("file", "map")
-    known_map = table.path("map", folder) if "map" in table else None
-    return WorldFile(table.path("file", folder), known_map)
+    map_file = table.path("map", folder) if "map" in table else None
+    return WorldFile(table.path("file", folder), map_file)
 
 
 def numbered_files(folder: Path, stem: str, suffix: str) -> Dict[int, Path]:
-    """``<stem>_N<suffix>`` in a folder and not far below it, by N; none if that cannot be looked at."""
+    """Return files ``<stem>_N<suffix>`` of a folder and its subfolders by N; empty if it cannot be read."""
     name = re.compile(rf"{stem}_([0-9]{{1,9}}){re.escape(suffix)}")
     patterns = ["*/" * depth + f"{stem}_*{suffix}" for depth in range(SEARCH_DEPTH + 1)]
     try:
         found = [file for pattern in patterns for file in sorted(folder.glob(pattern))]
-    except (OSError, ValueError):  # no folder can have that name
+    except (OSError, ValueError):  # not a valid folder name
         return {}
     matches = ((name.fullmatch(file.name), file) for file in found)
     return {int(match[1]): file for match, file in matches if match}

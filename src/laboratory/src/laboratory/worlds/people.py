@@ -1,4 +1,4 @@
-"""People who walk about, each in their own way, others for each seed."""
+"""Pedestrians of scenarios, different ones for each seed."""
 
 from dataclasses import dataclass, replace
 from typing import Any, Iterator, NamedTuple, Sequence, Tuple
@@ -12,19 +12,19 @@ from planar.geometry.distance_field import distance_field
 from sim_bridge.people.walker import Walker
 from sim_bridge.views.true_map import true_map
 
-# Metres: from where a person walks to or stands to what is solid; to where the robot starts, and from where
-# somebody stands for good to where it has to go; between people at the start.
-WALL_CLEARANCE, START_CLEARANCE, GOAL_CLEARANCE, APART = 0.5, 1.5, 1.2, 0.9
-# Places that each walks between, and how long one stays there at most, seconds.
+# Minimum distances [m]: from goals of pedestrians to obstacles; from their start to the robot's start; from
+# standing pedestrians to the robot's goals; between pedestrians at the start.
+WALL_CLEARANCE, START_CLEARANCE, GOAL_CLEARANCE, SPACING = 0.5, 1.5, 1.2, 0.9
+# Goals of each pedestrian, and the longest pause there [s].
 GOALS, MAX_PAUSE = 4, 4.0
-# Of people who are only counted: the share of children, of those who stand, and of adults with company.
+# Of pedestrians of an unspecified kind: share of children, of standing people, and of adults in pairs.
 CHILD_SHARE, STANDING_SHARE, PAIR_SHARE = 0.25, 0.15, 0.3
 MAX_PEDESTRIANS = 40
 _STREAM = 46
 
 
 class _PedestrianKind(NamedTuple):
-    """``speed``: m/s, mean, standard deviation, least and greatest; the rest in metres."""
+    """``speed``: mean, standard deviation, minimum and maximum [m/s]; ``radius`` and ``height`` [m]."""
 
     speed: Tuple[float, float, float, float]
     radius: float
@@ -32,13 +32,18 @@ class _PedestrianKind(NamedTuple):
 
 
 _ADULT = _PedestrianKind((1.0, 0.2, 0.6, 1.4), 0.2, 1.7)
-# Who run more than they walk.
+# Faster than adults.
 _CHILD = _PedestrianKind((1.3, 0.3, 0.8, 1.8), 0.15, 1.1)
 
 
 @dataclass(frozen=True)
 class PedestrianRoute:
-    """Of one adult, from place to place, x and y of each, at a ``speed``, m/s."""
+    """Fully specified pedestrian: an adult who walks between goals.
+
+    Attributes:
+        goals: x and y of each goal in the world frame [m].
+        speed: Preferred speed [m/s].
+    """
 
     goals: Tuple[Tuple[float, float], ...]
     speed: float = _ADULT.speed[0]
@@ -46,9 +51,15 @@ class PedestrianRoute:
 
 @dataclass(frozen=True)
 class Pedestrians:
-    """How many: ``adults`` who walk alone, ``children``, ``standing``; ``groups``: how many walk together.
+    """Number of pedestrians by kind.
 
-    ``anyone``: people of whom the seed says what they are. ``walks``: of people of whom all is known.
+    Attributes:
+        adults: Adults who walk alone.
+        children: Children.
+        standing: Adults who stand still.
+        groups: Size of each group that walks together.
+        unspecified: Pedestrians whose kind depends on the seed.
+        routes: Pedestrians with given goals.
     """
 
     adults: int = 0
@@ -60,24 +71,13 @@ class Pedestrians:
 
     @property
     def count(self) -> int:
-        return (
-            self.adults
-            + self.children
-            + self.standing
-            + sum(self.groups)
-            + self.unspecified
-            + len(self.routes)
-        )
+        grouped, given = sum(self.groups), len(self.routes)
+        return self.adults + self.children + self.standing + grouped + self.unspecified + given
 
     def resolved(self, rng: np.random.Generator) -> "Pedestrians":
-        """The same with nobody left of whom it is not known what they are."""
-        adults, children, standing, pairs, left = (
-            self.adults,
-            self.children,
-            self.standing,
-            0,
-            self.unspecified,
-        )
+        """Return the same pedestrians with a random kind for each unspecified one."""
+        adults, children, standing = self.adults, self.children, self.standing
+        pairs, left = 0, self.unspecified
         while left:
             chance = rng.random()
             if chance < CHILD_SHARE:
@@ -94,16 +94,24 @@ class Pedestrians:
 def with_people(
     arena: Arena, people: Pedestrians, seed: int, start: Pose2, places: Sequence[Pose2] = ()
 ) -> Arena:
-    """The arena with people in it, off the ``start`` of the robot; nobody stands for good at its ``places``.
+    """Add pedestrians at random positions.
 
-    Raises SettingsError if there is no room for them.
+    Args:
+        arena: Arena to add them to.
+        people: Number of pedestrians by kind.
+        seed: Seed of their kinds, goals and speeds.
+        start: Start pose of the robot, which stays free.
+        places: Poses where nobody stands still.
+
+    Raises:
+        SettingsError: There is not enough space.
     """
     rng = np.random.default_rng([seed, _STREAM])
     spawn_points = _SpawnPoints(true_map(arena.world, inside=(start.x, start.y)), start, places, rng)
     resolved = people.resolved(rng)
     walkers = [
-        Walker(f"person_{number}", np.array(walk.goals, dtype=float), walk.speed)
-        for number, walk in enumerate(people.routes)
+        Walker(f"person_{number}", np.array(route.goals, dtype=float), route.speed)
+        for number, route in enumerate(people.routes)
     ]
     for number, (kind, size) in enumerate(_walking_groups(resolved), 1):
         goals_xy = spawn_points.goals()
@@ -117,7 +125,7 @@ def with_people(
 
 
 def _walking_groups(people: Pedestrians) -> Iterator[Tuple[_PedestrianKind, int]]:
-    """Who walk, and how many of them together."""
+    """Kind and size of each walking group."""
     yield from ((_ADULT, 1) for _ in range(people.adults))
     yield from ((_CHILD, 1) for _ in range(people.children))
     yield from ((_ADULT, size) for size in people.groups)
@@ -126,14 +134,14 @@ def _walking_groups(people: Pedestrians) -> Iterator[Tuple[_PedestrianKind, int]
 def _walker(
     number: int, kind: _PedestrianKind, goals_xy: np.ndarray, group: int, rng: np.random.Generator
 ) -> Walker:
-    mean, deviation, least, greatest = kind.speed
-    speed = float(np.clip(rng.normal(mean, deviation), least, greatest))
-    rest = float(rng.uniform(0.0, MAX_PAUSE))
-    return Walker(f"person_{number}", goals_xy, speed, rest, group, kind.radius, kind.height)
+    mean, deviation, minimum, maximum = kind.speed
+    speed = float(np.clip(rng.normal(mean, deviation), minimum, maximum))
+    pause = float(rng.uniform(0.0, MAX_PAUSE))
+    return Walker(f"person_{number}", goals_xy, speed, pause, group, kind.radius, kind.height)
 
 
 class _SpawnPoints:
-    """Where there is room for people, who come to each other from any of these."""
+    """Free positions for pedestrians, all connected."""
 
     def __init__(self, grid: OccupancyGrid, start: Pose2, places: Sequence[Pose2], rng: np.random.Generator):
         clearance = distance_field(grid.cells != FREE, grid.resolution)
@@ -142,20 +150,20 @@ class _SpawnPoints:
         self._places, self._rng = places, rng
 
     def goals(self) -> np.ndarray:
-        """The first has nobody near it yet."""
+        """Draw goals; nobody has been placed near the first."""
         first = self._sample(self._free_xy)
         return np.array([first, *(self._sample(self._all_xy) for _ in range(GOALS - 1))])
 
     def claim_nearest(self, goal_xy: np.ndarray) -> np.ndarray:
-        """The nearest spot that nobody has taken yet; now it is taken."""
+        """Return the nearest free position, and remove its surroundings from the free ones."""
         if not len(self._free_xy):
-            raise SettingsError("there is no room for so many people")
-        spot = self._free_xy[int(np.argmin(np.hypot(*(self._free_xy - goal_xy).T)))]
-        self._free_xy = self._free_xy[_is_far_from(self._free_xy, spot, APART)]
-        return spot
+            raise SettingsError("there is not enough space for so many people")
+        position = self._free_xy[int(np.argmin(np.hypot(*(self._free_xy - goal_xy).T)))]
+        self._free_xy = self._free_xy[_is_far_from(self._free_xy, position, SPACING)]
+        return position
 
     def claim_standing(self) -> np.ndarray:
-        """In nobody's way who has to go to one of the places."""
+        """Return a free position away from the robot's goals, for a standing pedestrian."""
         free_xy = self._free_xy
         for place in self._places:
             free_xy = free_xy[_is_far_from(free_xy, (place.x, place.y), GOAL_CLEARANCE)]
@@ -163,17 +171,17 @@ class _SpawnPoints:
 
     def _sample(self, points_xy: np.ndarray) -> np.ndarray:
         if not len(points_xy):
-            raise SettingsError("there is no room for so many people")
+            raise SettingsError("there is not enough space for so many people")
         return points_xy[self._rng.integers(len(points_xy))]
 
 
 def _is_far_from(points_xy: np.ndarray, point: Any, distance: float) -> np.ndarray:
-    """Which of some spots (N, 2) are, bool (N,)."""
+    """Which of the points (N, 2) are farther than ``distance`` from a point, bool (N,)."""
     return np.hypot(*(points_xy - np.asarray(point)).T) > distance
 
 
 def read_people(happens: Table) -> Pedestrians:
-    """``people``: how many, or a table of who they are. Raises the table's error."""
+    """Read ``people``: their number, numbers by kind, or a list of routes. Raises SettingsError."""
     if "people" not in happens:
         return Pedestrians()
     if isinstance(happens.value("people"), int):
@@ -187,7 +195,7 @@ def read_people(happens: Table) -> Pedestrians:
         adults, children, standing = (table.count(key) if key in table else 0 for key in kinds)
         groups: Any = table.value("groups") if "groups" in table else []
         is_fine = isinstance(groups, list) and all(type(size) is int and size > 1 for size in groups)
-        table.check(is_fine, "groups", "a list of how many walk together, each at least 2")
+        table.check(is_fine, "groups", "a list of group sizes of at least 2")
         people = Pedestrians(adults, children, standing, tuple(groups))
     happens.check(people.count <= MAX_PEDESTRIANS, "people", f"at most {MAX_PEDESTRIANS}")
     return people
@@ -201,7 +209,7 @@ def _read_route(table: Table) -> PedestrianRoute:
     except (TypeError, ValueError):
         goals_xy = np.empty((0, 2))
     is_fine = len(goals_xy) > 0 and len(goals_xy) == len(goals) and bool(np.isfinite(goals_xy).all())
-    table.check(is_fine, "goals", "a list of places, x and y of each")
+    table.check(is_fine, "goals", "a list of [x, y]")
     speed = table.number("speed", PedestrianRoute.speed)
     table.check(0.0 < speed <= 5.0, "speed", "positive and at most 5 m/s")
     return PedestrianRoute(tuple((x, y) for x, y in goals_xy.tolist()), speed)

@@ -1,4 +1,4 @@
-"""What worlds are put together from."""
+"""Building blocks of worlds: floor, walls and posts."""
 
 import numpy as np
 
@@ -13,11 +13,11 @@ WALL_HEIGHT = 1.0
 
 
 def wall(name: str, x: float, y: float, width: float, depth: float) -> Body:
-    """A box along the axes with its middle at (x, y), metres."""
+    """Return an axis-aligned wall centred at (x, y) [m]."""
     return box_on_floor(name, (width, depth, WALL_HEIGHT), Pose2(x, y))
 
 
 def post(name: str, place: Pose2, radius: float, height: float, is_kinematic: bool = False) -> Body:
-    """A cylinder that stands on the floor."""
+    """Return a cylinder that stands on the floor [m]."""
     solid = (Collision(Cylinder(radius, height), np.eye(4)),)
     return Body(f"{name}::link", from_pose2(place, z=height / 2.0), solid, is_kinematic=is_kinematic)

@@ -1,7 +1,7 @@
-"""The contract of a source of worlds.
+"""Contract of a world source.
 
-A source is a frozen dataclass of its own file, with a function that reads it from a scenario's table
-``world``, and one line of the registry. The same seed gives the same world.
+A world source is a frozen dataclass in a module of this folder, with a function that reads it from the table
+``world`` of a scenario and an entry in laboratory.scenario.registry. The same seed gives the same world.
 """
 
 from dataclasses import dataclass
@@ -18,11 +18,15 @@ from sim_bridge.world import World
 @renamed_fields(way="reference_length")
 @dataclass(frozen=True, eq=False)
 class Arena:
-    """A world, and what is known of it.
+    """A world with its map and places.
 
-    ``grid``: the map that the robot is given; None: it has none. ``title``: which of several worlds it is.
-    ``way``: metres of the way that a benchmark compares with. ``places``: within reach in it.
-    ``doorways``: doors that may be shut, if it is known where they are.
+    Attributes:
+        world: The simulated world.
+        grid: Map that the robot is given; None: it has none.
+        title: Name of the world in results.
+        reference_length: Length of the benchmark's reference path [m].
+        places: Named poses, all reachable from the start.
+        doorways: Doors that may be closed.
     """
 
     world: World
@@ -34,13 +38,13 @@ class Arena:
 
 
 class WorldSource(Protocol):
-    """Gives a world for each seed."""
+    """A world for each seed."""
 
     def arena(self, seed: int) -> Arena:
-        """Raises PlanarError naming what is wrong."""
+        """Return the world of a seed. Raises PlanarError."""
 
     def files(self) -> Tuple[Path, ...]:
-        """What the worlds are made from."""
+        """Return the files the worlds are read from."""
 
     def arena_number(self, seed: int) -> int:
-        """The same for seeds of the same world."""
+        """Return a number that is equal for seeds with the same world."""
