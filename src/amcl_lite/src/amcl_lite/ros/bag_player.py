@@ -17,7 +17,7 @@ POLL_SECONDS = 0.01
 MAP_POLL_SECONDS = 0.5
 
 
-class BagPlayer:
+class BagProcessor:
     """Processes a bag, logs the final pose and shuts the node down."""
 
     def __init__(

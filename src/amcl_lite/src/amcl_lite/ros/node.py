@@ -71,9 +71,9 @@ class AmclNode:
 
     def run_from_bag(self, path: str, localize_globally: bool) -> None:
         """Process a bag, log the final pose and shut the node down."""
-        from amcl_lite.ros.bag_player import BagPlayer  # late: rosbag needs memory and is rarely used
+        from amcl_lite.ros.bag_player import BagProcessor  # late: rosbag needs memory and is rarely used
 
-        bag_player = BagPlayer(self._shared, self._transforms, self._scans, self._publisher)
+        bag_player = BagProcessor(self._shared, self._transforms, self._scans, self._publisher)
         bag_player.run(Path(path), localize_globally)
 
     def _monitor_inputs(self):

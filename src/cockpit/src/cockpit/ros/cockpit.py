@@ -36,7 +36,7 @@ FRAMES = "frames"
 JITTER_SECONDS = 0.1
 
 
-class Cockpit:
+class CockpitController:
     """Connects the page to the ROS graph.
 
     Args:

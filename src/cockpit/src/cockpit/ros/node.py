@@ -17,7 +17,7 @@ from rosgraph import get_master_uri
 from cockpit.errors import CockpitError, PortError
 from cockpit.layers import all_layers
 from cockpit.page.server import Page
-from cockpit.ros.cockpit import Cockpit
+from cockpit.ros.cockpit import CockpitController
 from cockpit.ros.tools import all_tools, names
 from cockpit.ros.world.scene_reader import SceneReader
 from planar import PlanarError
@@ -80,7 +80,7 @@ def serve(where: str, tool: Optional[str], words: Tuple[str, ...] = ()) -> int:
     _wait_for_nodes()
     is_interrupted = _install_signal_handlers()
     init_node("cockpit", anonymous=True, log_level=rospy.WARN)
-    cockpit = Cockpit(page, reader)
+    cockpit = CockpitController(page, reader)
     if tool is not None:
         cockpit.toolbox.open(tool, words)
     cockpit.run(lambda: is_interrupted() or rospy.is_shutdown())
