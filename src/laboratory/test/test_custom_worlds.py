@@ -23,7 +23,7 @@ task: {reach: {x: 3.0, y: 0.0, radius: 0.5}}
 
 @dataclass(frozen=True)
 class Corridor:
-    """Two walls, ``width`` m apart and as far along as the seed says."""
+    """Two walls, ``width`` m apart and at an x that is the seed."""
 
     width: float = 2.0
     walls: int = 2
