@@ -142,3 +142,32 @@ def test_a_marker_that_arrives_before_its_mission_is_assigned_when_the_mission_i
     assert referee.mission_record.markers == []
     referee._on_truth(truth(1.0, 6.9))
     assert referee.mission_record.markers == ["lamp at attic"]
+
+
+def test_a_pickup_is_judged_by_the_truth_at_its_moment(referee):
+    """A robot that is driven away while it picks up, and says that it has picked up."""
+    for stamp, x in ((1.0, 2.01), (2.0, 2.9), (3.0, 4.0)):
+        referee._on_truth(truth(stamp, x))
+    referee._on_mission(arrival(1.0))
+    picked_up = arrival(2.0)
+    picked_up.deliveries[0].state = DeliveryState.CARRYING
+    referee._on_mission(picked_up)
+    assert referee.mission_record.deliveries[0].pickup_error == pytest.approx(0.9)
+
+
+def test_after_a_reset_of_time_the_truth_of_the_time_before_does_not_count(referee):
+    for stamp in range(1, 10):
+        referee._on_truth(truth(float(stamp), 2.0))
+    referee._on_truth(truth(0.1, 0.0))
+    referee._on_truth(truth(2.9, 0.0))
+    picked_up = arrival(2.0)
+    picked_up.deliveries[0].state = DeliveryState.CARRYING
+    referee._on_mission(picked_up)
+    assert referee.mission_record.deliveries[0].pickup_error == pytest.approx(2.0)
+
+
+def test_states_published_before_a_reset_of_time_do_not_wait_for_that_time_again(referee):
+    referee._on_truth(truth(9.0, 2.1))
+    referee._on_mission(arrival(9.1))
+    referee._on_truth(truth(0.1, 0.0))
+    assert referee.mission_record.deliveries[0].pickup_error == pytest.approx(0.1)

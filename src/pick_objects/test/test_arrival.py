@@ -31,6 +31,37 @@ def test_a_confirmed_arrival_followed_by_a_scan_that_does_not_fit_is_a_displacem
     ]
 
 
+def test_a_fit_that_is_unknown_for_a_while_does_not_hide_a_displacement():
+    """As after a jump of time, when no fit is fresh."""
+    arrival = ArrivalCheck(GOAL)
+    arrival.check(GoalReached(), NEAR, GOOD, 0.0)
+    outcomes = [arrival.check(None, NEAR, fit, 1.0) for fit in (GOOD, None, BAD)]
+    assert outcomes == [None, None, RobotDisplaced()]
+
+
+def test_a_robot_that_has_moved_since_its_arrival_by_its_odometry_is_displaced():
+    """Driven by another node's velocity commands, or reset: the scans fit all the time."""
+    arrival = ArrivalCheck(GOAL)
+    odometry = [Pose2(7.0, 1.0), Pose2(7.05, 1.0), Pose2(7.2, 1.0), Pose2(7.2, 1.0)]
+    assert arrival.check(GoalReached(), NEAR, GOOD, 0.0, odometry[0]) == GoalReached()
+    outcomes = [arrival.check(None, NEAR, GOOD, 1.0, pose) for pose in odometry[1:]]
+    assert outcomes == [None, RobotDisplaced(), None]
+
+
+def test_odometry_that_is_known_only_after_the_arrival_is_compared_from_then_on():
+    arrival = ArrivalCheck(GOAL)
+    arrival.check(GoalReached(), NEAR, None, 0.0)
+    outcomes = [arrival.check(None, NEAR, None, 1.0, Pose2(x, 0.0)) for x in (3.0, 3.0, 0.0)]
+    assert outcomes == [None, None, RobotDisplaced()]
+
+
+def test_odometry_does_not_matter_while_the_robot_drives():
+    arrival = ArrivalCheck(GOAL)
+    assert arrival.check(None, FAR, GOOD, 0.0, Pose2()) is None
+    assert arrival.check(GoalReached(), NEAR, GOOD, 1.0, Pose2(3.0, 0.0)) == GoalReached()
+    assert arrival.check(None, NEAR, GOOD, 2.0, Pose2(3.0, 0.0)) is None
+
+
 def test_an_arrival_that_was_never_confirmed_is_no_displacement():
     arrival = resent()
     assert arrival.check(GoalReached(), GOAL, BAD, 6.2) == GoalReached()

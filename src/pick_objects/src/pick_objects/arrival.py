@@ -17,6 +17,8 @@ RECENT_SCANS = 2
 STANDING_SECONDS = 1.0
 # Distance that a relocalized robot may drive without being checked again [m].
 SHORT_DISTANCE = 0.25
+# Distance from where it arrived at which a robot is no longer there [m]; the error of the arrival adds to it.
+DISPLACED_DISTANCE = 0.1
 
 
 class RecentScanFit:
@@ -50,7 +52,7 @@ class ArrivalCheck:
     If the last scans contradict the estimated pose, the robot stands for a moment, so that localization can
     correct the estimate, and is then sent to the goal once more: scans taken while turning may fit badly at
     the correct pose. A robot that has arrived with a confirmed pose and then contradicts it may have been
-    displaced.
+    displaced; one whose odometry has changed since its arrival has moved.
 
     Args:
         goal: Pose of the goal in the map.
@@ -61,8 +63,16 @@ class ArrivalCheck:
         self._standing: Optional[ElapsedTime] = None
         self._was_resent = self._was_relocalized = self._has_arrived = self._was_confirmed = False
         self._distance = 0.0
+        self._arrived_at: Optional[Pose2] = None
 
-    def check(self, outcome: GoalOutcome, robot: Pose2, fit: Optional[float], now: float) -> ArrivalEvent:
+    def check(
+        self,
+        outcome: GoalOutcome,
+        robot: Pose2,
+        fit: Optional[float],
+        now: float,
+        odometry: Optional[Pose2] = None,
+    ) -> ArrivalEvent:
         """Judge the outcome of the goal; call it at each tick, also without a new outcome.
 
         Args:
@@ -70,6 +80,7 @@ class ArrivalCheck:
             robot: Estimated pose in the map.
             fit: Worst fit of the last scans at that pose; None if it is not known.
             now: Time [s].
+            odometry: Pose in the odometry frame; None if it is not known.
 
         Returns:
             The outcome to act on; ResendGoal; RobotDisplaced if the robot has probably been moved; or None.
@@ -77,11 +88,11 @@ class ArrivalCheck:
         if self._standing is not None:
             return self._wait_standing(fit, now)
         if self._has_arrived:
-            return self._check_displaced(fit)
+            return self._check_displaced(fit, odometry)
         if self._was_resent:
             self._distance = max(self._distance, self._goal.distance_to(robot))
         if not isinstance(outcome, GoalReached) or not _contradicts(fit) or self._is_still_near:
-            self._has_arrived = isinstance(outcome, GoalReached)
+            self._has_arrived, self._arrived_at = isinstance(outcome, GoalReached), odometry
             return outcome
         if self._was_resent:
             return GoalFailed("the laser scan does not fit the map at the estimated pose: robot displaced?")
@@ -93,9 +104,23 @@ class ArrivalCheck:
         """Whether the robot, relocalized while standing, has driven too short a distance to be lost again."""
         return self._was_relocalized and self._distance < SHORT_DISTANCE
 
-    def _check_displaced(self, fit: Optional[float]) -> Optional[RobotDisplaced]:
-        was_confirmed, self._was_confirmed = self._was_confirmed, fit is not None and not _contradicts(fit)
-        return RobotDisplaced() if was_confirmed and _contradicts(fit) else None
+    def _check_displaced(self, fit: Optional[float], odometry: Optional[Pose2]) -> Optional[RobotDisplaced]:
+        was_confirmed = self._was_confirmed
+        if fit is not None:  # no fit is fresh after a jump of time
+            self._was_confirmed = not _contradicts(fit)
+        has_moved = self._has_moved(odometry)
+        return RobotDisplaced() if has_moved or (was_confirmed and _contradicts(fit)) else None
+
+    def _has_moved(self, odometry: Optional[Pose2]) -> bool:
+        """Whether the robot has left the place of its arrival; it is reported once."""
+        if odometry is None:
+            return False
+        has_moved = (
+            self._arrived_at is not None and odometry.distance_to(self._arrived_at) > DISPLACED_DISTANCE
+        )
+        if has_moved or self._arrived_at is None:
+            self._arrived_at = odometry
+        return has_moved
 
     def _wait_standing(self, fit: Optional[float], now: float) -> Optional[ResendGoal]:
         if self._standing is None or self._standing.update(now) < STANDING_SECONDS:

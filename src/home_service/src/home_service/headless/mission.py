@@ -252,7 +252,9 @@ class HeadlessMission:
         order = self._advance_errand(base_in_map, observation.base_in_world)
         if isinstance(order, DriveToPlace):
             self._goal, self._sent_to, self._arrival = order.pose, order.pose, ArrivalCheck(order.pose)
-        self._event = self._arrival.check(_event_of(decision), base_in_map, self._fit.minimum, self._now)
+        self._event = self._arrival.check(
+            _event_of(decision), base_in_map, self._fit.minimum, self._now, odometry.base_in_odom
+        )
         if implausibility is not None and self._sensors.is_patience_exceeded(self._now):
             # As move_base does if a sensor stays implausible.
             self._navigator.clear_goal()

@@ -21,8 +21,9 @@ class DeliveryRecord:
         state: Last published state.
         attempts: Goals sent for it.
         reason: Why it failed.
-        pickup_error: True distance from the nearest pose of the source on arrival [m].
-        dropoff_error: The same at the destination [m].
+        pickup_error: True distance from the nearest pose of the source at the pick-up, before it on
+            arrival [m].
+        dropoff_error: The same at the destination and the set-down [m].
     """
 
     name: str

@@ -10,10 +10,10 @@ from std_msgs.msg import String
 
 from home_service.judging.verdict import ERRAND, Verdict
 from home_service.options import LaunchPlan, RunOptions
-from home_service.ros import subscribe
 from home_service.ros.referee import Referee
 from home_service.ros.run import Run
 from home_service.ros.run_recorder import RunRecorder
+from home_service.ros.subscriptions import subscribe
 from planar import Pose2
 from planar.maps.places import NamedPlace
 from planar_ros.messages.conversion import pose2_from_msg

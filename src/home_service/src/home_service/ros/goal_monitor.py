@@ -6,7 +6,7 @@ from actionlib_msgs.msg import GoalStatus
 from move_base_msgs.msg import MoveBaseActionGoal, MoveBaseActionResult
 
 from home_service.judging.goal_log import GoalLog
-from home_service.ros import subscribe
+from home_service.ros.subscriptions import subscribe
 from planar import Pose2
 from planar_ros.messages.conversion import pose2_from_msg
 

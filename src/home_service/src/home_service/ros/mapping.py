@@ -15,10 +15,10 @@ from home_service.inputs import WorldInputs
 from home_service.judging.map_truth import judge_map, score_against_world
 from home_service.judging.verdict import Verdict
 from home_service.options import LaunchPlan, MappingOptions
-from home_service.ros import subscribe
 from home_service.ros.referee import Referee
 from home_service.ros.run import Run
 from home_service.ros.run_recorder import RunRecorder
+from home_service.ros.subscriptions import subscribe
 from planar import Pose2, SettingsError, load_map
 from supervision.display import Display
 from supervision.errors import LaunchError

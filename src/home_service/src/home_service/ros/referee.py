@@ -18,8 +18,8 @@ from visualization_msgs.msg import Marker
 from home_service.judging.delivery_monitor import DeliveryMonitor
 from home_service.judging.marker_log import MarkerLog, MarkerState
 from home_service.judging.verdict import FINAL_STATES, MissionRecord, Verdict, collision, judge
-from home_service.ros import subscribe
 from home_service.ros.goal_monitor import GoalMonitor
+from home_service.ros.subscriptions import subscribe
 from pick_objects import Delivery, DeliveryStage, parse_mission
 from planar import PlanarError, Pose2
 from planar.maps.places import NamedPlace
@@ -157,6 +157,8 @@ class Referee:
     def _on_truth(self, message):
         truth, stamp = pose2_from_msg(message.pose.pose), message.header.stamp.to_sec()
         with self._lock:
+            if stamp < self.simulated_time:
+                self._on_reset_time()
             if self.truth is None:
                 self._start_truth, self._start_time, self.start_wall = truth, stamp, time.monotonic()
             else:
@@ -167,6 +169,11 @@ class Referee:
             has_moved = self._start_truth.distance_to(truth) > MOTION_DISTANCE
             if self.first_motion_wall is None and has_moved:
                 self.first_motion_wall = time.time()
+
+    def _on_reset_time(self):
+        """Process what was published before time was set back, and drop the ground truth of that time."""
+        self._process_missions(math.inf)
+        self._recent.clear()
 
     def _on_state(self, message):
         with self._lock:
@@ -183,11 +190,10 @@ class Referee:
             self._pending_missions.append(message)
             self._process_missions()
 
-    def _process_missions(self):
-        """Process mission states whose stamp the ground truth has reached."""
-        while (
-            self._pending_missions and self._pending_missions[0].header.stamp.to_sec() <= self.simulated_time
-        ):
+    def _process_missions(self, until: Optional[float] = None):
+        """Process mission states with stamps up to ``until``, by default up to that of the ground truth."""
+        last = self.simulated_time if until is None else until
+        while self._pending_missions and self._pending_missions[0].header.stamp.to_sec() <= last:
             message = self._pending_missions.popleft()
             truth = self._truth_at(message.header.stamp.to_sec())
             for state in message.deliveries:

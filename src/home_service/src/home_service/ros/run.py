@@ -16,6 +16,7 @@ from home_service.options import LaunchPlan, RunOptions
 from home_service.result import ResultError, ResultFile, grouped_by_reason
 from home_service.ros.bags.rosbag_process import RosbagProcess
 from home_service.ros.clock_monitor import ClockMonitor
+from home_service.ros.subscriptions import subscribing_together
 from home_service.ros.trace_recorder import TraceRecorder
 from planar import PlanarError, SettingsError
 from planar_ros.lockstep.client import OBSERVERS_PARAMETER
@@ -172,11 +173,12 @@ class Run:
     def _subscribe(self) -> None:
         """Make this process a node and start all observers."""
         init_node(NODE, log_level=rospy.ERROR)
-        self._trace.start()
-        if self._launch.is_simulated:
-            self._clock_monitor.start()
-        self._judge.start()
-        self._recorder.start()
+        with subscribing_together():
+            self._trace.start()
+            if self._launch.is_simulated:
+                self._clock_monitor.start()
+            self._judge.start()
+            self._recorder.start()
         rospy.set_param(OBSERVERS_PARAMETER, [rospy.get_name()])
 
     def _finish(self, error: Optional[BaseException]) -> None:

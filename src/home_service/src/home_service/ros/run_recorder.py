@@ -12,8 +12,8 @@ from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker
 
 from home_service.judging.samples import Samples
-from home_service.ros import subscribe
 from home_service.ros.referee import CONNECTION_LOG_FILE
+from home_service.ros.subscriptions import subscribe
 from planar import Pose2
 from planar.maps.places import NamedPlace
 from planar_ros.messages.conversion import (

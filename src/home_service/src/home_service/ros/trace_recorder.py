@@ -12,7 +12,7 @@ from visualization_msgs.msg import Marker
 
 from home_service.judging.trace import FILE, Trace, TraceEntry, hash_of, write_trace
 from home_service.result import ResultFile
-from home_service.ros import subscribe
+from home_service.ros.subscriptions import subscribe
 
 ROBOTS = ("", "follower/")
 

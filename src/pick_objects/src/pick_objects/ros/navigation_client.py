@@ -3,6 +3,7 @@
 from typing import Optional, Union
 
 import rospy
+from nav_msgs.msg import Odometry
 from std_msgs.msg import Float32
 
 from pick_objects.approach import DriveToPlace
@@ -12,6 +13,8 @@ from planar import Pose2
 from planar.driving import GoalFailed, GoalReached, RobotDisplaced
 from planar_ros.calls.move_base import MoveBaseClient
 from planar_ros.calls.services import ServiceError
+from planar_ros.messages.conversion import pose2_from_msg
+from planar_ros.messages.validation import subscribe
 
 # Fit of each scan, published by amcl_lite; the official amcl does not publish it.
 QUALITY_TOPIC = "amcl/localization_quality"
@@ -32,7 +35,9 @@ class NavigationClient:
         self._order: Optional[DriveToPlace] = None
         self._arrival = ArrivalCheck(Pose2())
         self._fit, self._fit_at = RecentScanFit(), rospy.Time(0)
+        self._odometry: Optional[Pose2] = None
         rospy.Subscriber(QUALITY_TOPIC, Float32, self._on_fit, queue_size=1)
+        subscribe("odom", Odometry, self._on_odometry, queue_size=1)
 
     @property
     def base_in_map(self) -> Pose2:
@@ -53,14 +58,18 @@ class NavigationClient:
         if self._order is None:
             return None
         reported = None if outcome is None else outcome.event
-        event = self._arrival.check(reported, self.base_in_map, self._recent_fit, rospy.get_time())
+        event = self._arrival.check(
+            reported, self.base_in_map, self._recent_fit, rospy.get_time(), self._odometry
+        )
         place = self._order.place.name
         if isinstance(event, ResendGoal):
             rospy.logwarn("place %s: scans contradict the estimated pose, the goal is sent again", place)
             self.move_base.send(self._order.pose)
             return None
         if isinstance(event, RobotDisplaced):
-            rospy.logwarn("place %s: the robot may have been displaced, scans contradict its pose", place)
+            rospy.logwarn(
+                "place %s: the robot has moved since its arrival, or scans contradict its pose", place
+            )
         if isinstance(event, GoalFailed):
             rospy.logwarn("place %s: %s", place, event.reason)
         return event
@@ -85,3 +94,6 @@ class NavigationClient:
     def _on_fit(self, message: Float32) -> None:
         self._fit.add(message.data)
         self._fit_at = rospy.Time.now()
+
+    def _on_odometry(self, message: Odometry) -> None:
+        self._odometry = pose2_from_msg(message.pose.pose)
