@@ -53,7 +53,7 @@ def test_programs_are_made_executable_in_the_copy(tmp_path):
 def test_packages_that_cannot_be_configured_are_listed_with_the_reason(tmp_path):
     packages = {name: tmp_path / "src" / name for name in ("maps", "worlds", "pick")}
     broken = broken_configurations(
-        Workspace(tmp_path, tmp_path / "src", packages, tmp_path / "pretended"), OUTPUT
+        Workspace(tmp_path, tmp_path / "src", packages, tmp_path / "placeholders"), OUTPUT
     )
     assert broken == {
         "maps": "Could NOT find Protobuf (missing: Protobuf_LIBRARIES)",
@@ -72,7 +72,7 @@ CMake Generate step failed.  Build files cannot be regenerated correctly.
 def test_a_dependency_on_message_targets_that_do_not_exist_is_ignored(tmp_path, monkeypatch):
     (tmp_path / "devel").mkdir()
     (tmp_path / "devel/setup.bash").touch()
-    workspace = Workspace(tmp_path, tmp_path / "src", {}, tmp_path / "pretended")
+    workspace = Workspace(tmp_path, tmp_path / "src", {}, tmp_path / "placeholders")
     outputs = [ABSENT, "[100%] Built target drive_bot"]
     monkeypatch.setattr(building, "_catkin_make", lambda workspace, log: outputs.pop(0))
     build(workspace, tmp_path / "build.log", print)
@@ -83,7 +83,7 @@ def test_a_dependency_on_message_targets_that_do_not_exist_is_ignored(tmp_path, 
 def test_turtlebot3_model_has_a_default(tmp_path, monkeypatch):
     (tmp_path / "devel").mkdir()
     (tmp_path / "devel/setup.bash").touch()
-    workspace = Workspace(tmp_path, tmp_path / "src", {}, tmp_path / "pretended", ())
+    workspace = Workspace(tmp_path, tmp_path / "src", {}, tmp_path / "placeholders", ())
     monkeypatch.delenv("TURTLEBOT3_MODEL", raising=False)
     assert environment(workspace)["TURTLEBOT3_MODEL"] == "burger"
     monkeypatch.setenv("TURTLEBOT3_MODEL", "waffle")
@@ -94,5 +94,5 @@ def test_model_folders_are_appended_to_the_gazebo_model_path_of_the_project(tmp_
     (tmp_path / "devel").mkdir()
     (tmp_path / "devel/setup.bash").write_text("export GAZEBO_MODEL_PATH=/theirs")
     models = (tmp_path / "src/models", tmp_path / "src/world")
-    workspace = Workspace(tmp_path, tmp_path / "src", {}, tmp_path / "pretended", models)
+    workspace = Workspace(tmp_path, tmp_path / "src", {}, tmp_path / "placeholders", models)
     assert environment(workspace)["GAZEBO_MODEL_PATH"] == f"/theirs:{models[0]}:{models[1]}"

@@ -98,12 +98,11 @@ def copy_checkout(checkout: Checkout, placement: Placement, work: Path) -> Works
     for name in ("build", "devel"):
         (work / name).mkdir(exist_ok=True)
         (workspace / name).symlink_to(work / name)
-    (workspace / "src" / "CMakeLists.txt").unlink(
-        missing_ok=True
-    )  # often a link into the author's ROS installation
+    # Often a link into the author's ROS installation.
+    (workspace / "src" / "CMakeLists.txt").unlink(missing_ok=True)
     packages = {name: target / folder for name, folder in checkout.packages.items()}
     model_folders = tuple(target / folder for folder in checkout.model_folders())
-    return Workspace(workspace, target, packages, work / "pretended", model_folders)
+    return Workspace(workspace, target, packages, work / "placeholders", model_folders)
 
 
 def build(workspace: Workspace, log: Path, report: Callable[[str], None]) -> None:
@@ -138,7 +137,7 @@ def build(workspace: Workspace, log: Path, report: Callable[[str], None]) -> Non
             break
         _exclude(workspace, broken, report)
     if CONFIGURATION_INCOMPLETE in output or not (workspace.folder / "devel" / "setup.bash").exists():
-        raise BuildError(f"the project's workspace cannot be configured; see the CMake errors in {log}")
+        raise BuildError(f"the project's workspace cannot be configured; see the errors at the end of {log}")
     if _failed(output):
         output = _catkin_make(
             workspace, log
