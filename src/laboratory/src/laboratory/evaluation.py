@@ -1,4 +1,4 @@
-"""Evaluation of suites: execute the runs that have no stored result, then read all results."""
+"""Evaluation of planners on many seeds: execute the runs without a stored result, then read all results."""
 
 from dataclasses import dataclass
 from pathlib import Path

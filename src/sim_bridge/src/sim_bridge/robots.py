@@ -1,4 +1,4 @@
-"""The built-in robots, and robots from URDF or xacro files."""
+"""The built-in robots, and your own robot from a URDF or xacro file (docs/get_started/own_robot.md)."""
 
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Selection of keyframes, and removal of those that later sessions make redundant.
+"""Keyframe selection: which scans are chosen as keyframes, and which keyframes later sessions make redundant.
 
 A keyframe of an older session is redundant if newer keyframes cover nearly all that it saw often enough,
 whether the obstacles are still there or not. So a map grows with the area seen, not with the number of
@@ -26,7 +26,7 @@ _MARGIN = 3
 
 
 def is_keyframe(base_in_last_keyframe: Optional[Pose2], settings: MapperSettings) -> bool:
-    """Check whether a scan becomes a keyframe: the first one, and each after enough motion or rotation.
+    """Choose keyframes: the first scan, and each scan after enough motion or rotation.
 
     Args:
         base_in_last_keyframe: Pose of the base in the last keyframe; None if there is none yet.

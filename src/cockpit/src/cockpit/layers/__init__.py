@@ -1,4 +1,4 @@
-"""The layers, one a module; every module of this package is loaded."""
+"""Layers of the 3D view: each module of this package contains one, and all modules are loaded."""
 
 import importlib
 import pkgutil

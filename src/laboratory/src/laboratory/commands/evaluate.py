@@ -9,7 +9,7 @@ from supervision.command_line import argument, option
 
 @dataclass(frozen=True)
 class Evaluate:
-    """Run suites of scenarios on all cores, each seed once, and report statistics."""
+    """Evaluate planners on scenarios with many seeds, on all cores, and report statistics."""
 
     suites: Tuple[str, ...] = argument(
         "scenario files, folders of them, or names in scenarios/", nargs="+", metavar="SUITE"

@@ -1,4 +1,4 @@
-"""Observation: sensor data in the one form that costmaps integrate (costmap_2d: Observation)."""
+"""Costmap observation: a laser scan or point cloud as costmap layers use it (costmap_2d: Observation)."""
 
 from dataclasses import dataclass
 from typing import Union

@@ -115,7 +115,7 @@ class GoalExecution:
     def update(
         self, state: RobotState, oscillation_distance: float, commanded: Twist2, period: float
     ) -> None:
-        """Update travelled distance and progress.
+        """Update travelled distance and goal progress.
 
         Args:
             state: Robot state at this control tick.

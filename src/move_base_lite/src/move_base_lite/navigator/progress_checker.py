@@ -1,4 +1,8 @@
-"""Progress check for plans that appear only because a recovery behaviour cleared the costmap."""
+"""Goal progress check after recovery, for plans that appear only because the costmap was cleared.
+
+Goal progress in general (move_base: ``~oscillation_distance``, ``~oscillation_timeout``) is measured by
+``GoalExecution.update`` and checked by ``state_machine``.
+"""
 
 import math
 from dataclasses import dataclass

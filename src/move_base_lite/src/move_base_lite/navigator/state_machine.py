@@ -1,4 +1,4 @@
-"""move_base's state machine: make a plan, follow it, and recover when either fails.
+"""move_base's state machine: make a plan, follow it, check goal progress, and recover when one of them fails.
 
 Each function runs one control period in a state; the GoalExecution holds the next state.
 """
@@ -138,7 +138,7 @@ def _wait_for_plan(execution: GoalExecution, state: RobotState, components: Navi
 
 
 def _control(execution: GoalExecution, state: RobotState, components: NavigatorComponents) -> Decision:
-    """Follow the plan; start recovery if it makes no progress."""
+    """Follow the plan and check goal progress; start recovery if there is none (oscillation)."""
     settings, controller, now = components.settings.move_base, components.controller, state.stamp
     if controller.is_goal_reached(state.base_in_map, state.twist):
         raise GoalSucceeded

@@ -63,7 +63,7 @@ class Forces:
         self._efforts: List[JointEffort] = []
 
     def apply_link_wrench(self, wrench: LinkWrench) -> None:
-        """Add a wrench.
+        """Schedule a wrench, in addition to those on the same link.
 
         Raises:
             UnknownEntityError: There is no such link.
@@ -72,7 +72,7 @@ class Forces:
         self._wrenches.append(wrench)
 
     def apply_joint_effort(self, effort: JointEffort) -> None:
-        """Add an effort.
+        """Schedule an effort, in addition to those on the same joint.
 
         Raises:
             UnknownEntityError: There is no such joint.

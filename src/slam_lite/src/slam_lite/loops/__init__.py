@@ -1,1 +1,1 @@
-"""Loop closure: candidates, search, verification, place recognition and relocalization."""
+"""Loop closure: candidates, search, verification (``loop_closure``), place recognition and relocalization."""

@@ -1,4 +1,4 @@
-"""Loop closures and their verification.
+"""Loop closure verification: which loop closures are accepted into the pose graph.
 
 A loop closure is accepted at once only if the graph already knew the place to within a small window.
 Otherwise a second consistent one nearby has to confirm it, and two more if the place was found by place

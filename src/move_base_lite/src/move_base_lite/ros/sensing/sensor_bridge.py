@@ -1,4 +1,4 @@
-"""Sensor bridge: collects transforms, odometry and sensor data for a control tick."""
+"""Sensor bridge: converts scans and clouds to costmap observations, collects transforms and odometry."""
 
 import threading
 from collections import deque

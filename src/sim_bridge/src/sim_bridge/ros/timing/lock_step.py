@@ -2,7 +2,7 @@
 
 Protocol (docs/explanation/deterministic_runs.md): the simulator publishes each tick on
 ``/simulation/moment``, and every synchronised node answers on ``/simulation/answer`` when it has finished
-its work. The nodes' side is ``planar_ros.step``; which tick is due decides ``sim_bridge.lock_step``.
+its work. The nodes' side is ``planar_ros.lockstep``; ``sim_bridge.lock_step`` decides which tick is due.
 """
 
 import time
