@@ -65,7 +65,7 @@ class CockpitFaultsTest(unittest.TestCase):
         self.page.click("Faults")
         self.page.wait_for("Inject the fault", f"{BIAS} m", "forever")
 
-    def test_what_the_simulator_refuses_is_replies_in_its_words(self):
+    def test_a_rejection_by_the_simulator_is_shown(self):
         self.page.choose("Kind", "wheel_weak")
         self.page.wait_for("The left wheel turns more slowly", "from 0 to 1.")
         self.page.fill_in("Strength", "7")

@@ -117,7 +117,7 @@ class CockpitHostileTest(unittest.TestCase):
             newcomer.wait_for_pictures(3)
         received = len(self.sines)
         wait_until("the graph to continue", lambda: len(self.sines) > received + 20)
-        self.wait_until_replies_to_stop()
+        self.wait_until_commanded_to_stop()
 
     def test_requests_without_the_token_are_rejected(self):
         cookie, origin = self.cookie(), {"Origin": self.site()}
@@ -146,7 +146,7 @@ class CockpitHostileTest(unittest.TestCase):
                 with contextlib.suppress(ConnectionClosed):
                     bad.send(nonsense)
                 bad.wait_until_closed()
-                self.wait_until_replies_to_stop()
+                self.wait_until_commanded_to_stop()
 
     def test_a_flood_of_messages_is_the_end_of_the_page_that_sends_it(self):
         with PageClient(self.cockpit.url) as bad:
@@ -155,7 +155,7 @@ class CockpitHostileTest(unittest.TestCase):
                 for _ in range(20_000):
                     bad.press(FORWARD)
             bad.wait_until_closed()
-            self.wait_until_replies_to_stop()
+            self.wait_until_commanded_to_stop()
 
     def test_a_value_that_a_control_cannot_have_reaches_nothing(self):
         with PageClient(self.cockpit.url) as bad:
@@ -173,10 +173,10 @@ class CockpitHostileTest(unittest.TestCase):
                 if number % 2:
                     opened.sendall(b"GET / HTTP/1.1\r\nHost: 127")  # and no more of it
             self.drive(driver)
-            self.wait_until_replies_to_stop()
+            self.wait_until_commanded_to_stop()
             self.drive(driver)
             driver.close()
-            self.wait_until_replies_to_stop()
+            self.wait_until_commanded_to_stop()
             self.good.wait_for_pictures()
 
     def test_a_page_that_reads_nothing_slows_nobody(self):
@@ -196,10 +196,10 @@ class CockpitHostileTest(unittest.TestCase):
             self.good.wait_for_pictures(MANY_PICTURES)
             self.assertLess(time.monotonic() - began, 0.3 * MANY_PICTURES)
 
-    def test_what_makes_no_sense_in_the_graph_is_replies_and_the_rest_is_shown(self):
+    def test_malformed_messages_are_reported_and_the_others_are_shown(self):
         for topic, message, why in (
             ("/map", grid(2, 2, [0, 0, 0]), "a grid of 2 x 2 with 3 cells"),
-            ("/far/map", grid(1, 1, [0], NAN), "a grid at no place, or of no resolution"),
+            ("/far/map", grid(1, 1, [0], NAN), "the grid's origin is not finite"),
             ("/lied/map", Liar("no grid at all"), "not a nav_msgs/OccupancyGrid"),
             ("/bad/markers", marker(1, NAN), "is not finite"),
         ):
@@ -291,8 +291,8 @@ class CockpitHostileTest(unittest.TestCase):
         (folder / "run" / "bag" / "run.bag").write_text("no bag")
         for words, why in (
             (("--web-port", str(self.port())), f"127.0.0.1:{self.port()} cannot be served"),
-            (("--web-port", "70000"), "'70000' is no port"),
-            (("--tool", "hammer"), "there is no 'hammer'"),
+            (("--web-port", "70000"), "'70000' is not valid"),
+            (("--tool", "hammer"), "unknown tool 'hammer'"),
             ((str(folder / "garbage.bag"),), "garbage.bag"),
             ((str(folder / "cut.bag"),), "cut.bag"),
             ((str(folder / "empty"),), "empty"),
@@ -315,7 +315,7 @@ class CockpitHostileTest(unittest.TestCase):
 
         wait_until("the robot to drive", moves)
 
-    def wait_until_replies_to_stop(self):
+    def wait_until_commanded_to_stop(self):
         at_rest = Twist()
         wait_until("a stop", lambda: not self.velocities or self.velocities[-1] == at_rest, STOP_SECONDS)
 

@@ -60,7 +60,7 @@ class CockpitReplayTest(unittest.TestCase):
             wait_until("a number after the end", lambda: 30 <= at["/number"].newest.data < 59)
             self.assertEqual(page.errors, [])
 
-    def test_what_is_no_recording_is_replies_before_anything_starts(self):
+    def test_a_file_that_is_no_recording_is_an_error_before_anything_starts(self):
         (self.folder / "broken.bag").write_text("no bag")
         for name, why in (("broken.bag", "not a readable bag"), ("none.bag", "no such bag")):
             command = [str(SCRIPTS / "cockpit.sh"), str(self.folder / name)]
