@@ -221,7 +221,7 @@ class CockpitToolsTest(unittest.TestCase):
             ["rqt", "-s", "rqt_dream"], capture_output=True, text=True, timeout=60, check=False
         )
         self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1))
-        self.assertIn("there is no 'rqt_dream' here", done.stderr)
+        self.assertIn("unknown program 'rqt_dream'", done.stderr)
 
     def assert_shows(self, command, *texts):
         with Command(*command) as run:
