@@ -112,8 +112,8 @@ class SlamReplayTest(unittest.TestCase):
         code, text = self.replay()
         self.assertEqual(code, 0)
         for sentence in (
-            "no transform odom -> base_link (frames: none), taking the base to stand still",
-            "no transform base_link -> laser so the laser is taken to be the base",
+            "no transform odom -> base_link (frames: none), assuming a stationary base",
+            "no transform base_link -> laser, assuming the laser at the origin of base_link",
         ):
             self.assertIn(f"warning: {self.bag}: {sentence}, at stamp 1000.000, 0 % into the bag\n", text)
         self.assert_mapped()
@@ -142,7 +142,7 @@ class SlamReplayTest(unittest.TestCase):
         break_scans(self.folder / "whole.bag", self.bag)
         code, text = self.replay()
         self.assertEqual(code, 0, text)
-        self.assertIn(f"{self.bag}: a scan is left out (a scan with angle_increment nan means nothing)", text)
+        self.assertIn(f"{self.bag}: skipping a scan (a scan with angle_increment nan means nothing)", text)
         self.assertEqual(len(self.poses()), SCANS - BROKEN)
         self.assert_mapped()
 

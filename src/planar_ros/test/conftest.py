@@ -1,4 +1,4 @@
-"""Connections as rospy has them, whose other end a test holds."""
+"""rospy connections whose remote socket belongs to the test."""
 
 import socket
 from types import SimpleNamespace
@@ -10,7 +10,7 @@ from planar_ros.lockstep.transport import LockstepConnection
 
 @pytest.fixture
 def connected():
-    """Connects a node to a topic: returns its end, and what is written to."""
+    """Connects a node to a topic; returns the remote socket and the connection."""
     ends = []
 
     def connected(node, topic):

@@ -1,4 +1,4 @@
-"""A master that does something before it answers, for programs that are asked to end just then."""
+"""A ROS master that runs a callback before it answers a subscription."""
 
 import os
 import sys
@@ -10,13 +10,13 @@ REGISTRATIONS = ("registerSubscriber", "registerPublisher")
 
 
 @contextmanager
-def slow_master(topic, when_asked):
-    """The environment of its nodes; ``when_asked`` is called when one subscribes to ``topic``."""
+def slow_master(topic, on_subscribe):
+    """Yield the environment for nodes; ``on_subscribe`` is called when one subscribes to ``topic``."""
 
     class Master:
         def _dispatch(self, method, arguments):
             if method == "registerSubscriber" and arguments[1] == topic:
-                when_asked()
+                on_subscribe()
             return [-1, "", 0] if method == "getParam" else [1, "", [] if method in REGISTRATIONS else 0]
 
     with SimpleXMLRPCServer(("127.0.0.1", 0), logRequests=False) as server:

@@ -19,42 +19,42 @@ from planar_ros.calls.actions import (
 from planar_ros.lockstep import LockstepClient
 
 
-def test_goals_that_have_ended_are_forgotten_but_for_the_last():
+def test_ended_goals_are_pruned_except_the_last_ones():
     times = map(rospy.Time, range(1, 3 * MAX_ENDED_GOALS))
     ended = [SimpleNamespace(handle_destruction_time=time) for time in times]
-    pursued = SimpleNamespace(handle_destruction_time=rospy.Time())
-    assert prune_ended([pursued, *ended]) == [pursued, *ended[-MAX_ENDED_GOALS:]]
-    assert prune_ended([*ended[:2], pursued]) == [*ended[:2], pursued]
+    active = SimpleNamespace(handle_destruction_time=rospy.Time())
+    assert prune_ended([active, *ended]) == [active, *ended[-MAX_ENDED_GOALS:]]
+    assert prune_ended([*ended[:2], active]) == [*ended[:2], active]
     assert prune_ended([]) == []
 
 
-def client(goals_heard_by, results_come_from="/server"):
-    def publisher(*listeners):
-        return SimpleNamespace(impl=SimpleNamespace(has_connection=lambda name: name in listeners))
+def client(goal_subscribers, result_publisher="/server"):
+    def publisher(*subscribers):
+        return SimpleNamespace(impl=SimpleNamespace(has_connection=lambda name: name in subscribers))
 
-    told = SimpleNamespace(_connection_header={"callerid": "/server"})
-    connection = SimpleNamespace(callerid_pub=results_come_from)
+    status = SimpleNamespace(_connection_header={"callerid": "/server"})
+    connection = SimpleNamespace(callerid_pub=result_publisher)
     inner = SimpleNamespace(
-        last_status_msg=told,
-        pub_goal=publisher(*goals_heard_by),
+        last_status_msg=status,
+        pub_goal=publisher(*goal_subscribers),
         pub_cancel=publisher("/server"),
         result_sub=SimpleNamespace(impl=SimpleNamespace(connections=[connection])),
     )
     return SimpleNamespace(action_client=inner)
 
 
-def test_a_server_is_ready_when_it_hears_goals_and_not_when_somebody_else_does():
-    assert not server_is_ready(client(goals_heard_by=["/recorder"]))
-    assert server_is_ready(client(goals_heard_by=["/recorder", "/server"]))
+def test_a_server_is_ready_only_when_it_has_subscribed_to_goals_itself():
+    assert not server_is_ready(client(goal_subscribers=["/recorder"]))
+    assert server_is_ready(client(goal_subscribers=["/recorder", "/server"]))
 
 
-def test_a_server_is_not_ready_before_its_results_can_come():
-    assert not server_is_ready(client(goals_heard_by=["/server"], results_come_from="unknown"))
+def test_a_server_is_not_ready_before_its_results_can_be_received():
+    assert not server_is_ready(client(goal_subscribers=["/server"], result_publisher="unknown"))
 
 
 @pytest.fixture
 def sending(monkeypatch):
-    """Makes a client whose goals go to a function; returns the client and its manager of goals."""
+    """Factory of a client whose goals go to a function; returns the client and its goal manager."""
     monkeypatch.setattr(rospy.rostime, "_rostime_initialized", True)
 
     def made(send):
@@ -69,7 +69,7 @@ def sending(monkeypatch):
     return made
 
 
-def test_a_goal_is_over_even_if_its_result_overtakes_the_return_of_its_sending(sending):
+def test_a_goal_is_over_even_if_its_result_arrives_before_send_goal_returns(sending):
     def refuse(goal, manager):
         status = GoalStatus(goal_id=goal.goal_id, status=GoalStatus.ABORTED, text="no way")
         manager.update_results(MoveBaseActionResult(status=status))
@@ -81,33 +81,33 @@ def test_a_goal_is_over_even_if_its_result_overtakes_the_return_of_its_sending(s
     assert client.get_goal_status_text() == "no way"
 
 
-def test_a_goal_is_lost_when_its_server_was_started_anew_before_it_was_acknowledged(sending):
+def test_a_goal_is_lost_when_its_server_restarts_before_acknowledging_it(sending):
     client, manager = sending(lambda goal, manager: None)
 
-    def hear(connection_header, after, *goal_ids):
-        told = GoalStatusArray(status_list=[GoalStatus(goal_id=goal_id) for goal_id in goal_ids])
-        told.header.stamp = rospy.Time.now() + rospy.Duration.from_sec(after)
-        told._connection_header = connection_header
-        client.action_client.last_status_msg = told
-        manager.update_statuses(told)
+    def receive_status(connection_header, after, *goal_ids):
+        message = GoalStatusArray(status_list=[GoalStatus(goal_id=goal_id) for goal_id in goal_ids])
+        message.header.stamp = rospy.Time.now() + rospy.Duration.from_sec(after)
+        message._connection_header = connection_header
+        client.action_client.last_status_msg = message
+        manager.update_statuses(message)
 
-    before, anew = {"callerid": "/server"}, {"callerid": "/server"}
-    hear(before, 0.0)
+    before, restarted = {"callerid": "/server"}, {"callerid": "/server"}
+    receive_status(before, 0.0)
     sent_to = server_connection(client)
     client.send_goal(MoveBaseGoal())
-    for header, after, is_lost in ((before, 2.0, False), (anew, 0.1, False), (anew, 2.0, True)):
-        hear(header, after)
+    for header, after, is_lost in ((before, 2.0, False), (restarted, 0.1, False), (restarted, 2.0, True)):
+        receive_status(header, after)
         assert goal_is_lost(client, sent_to) is is_lost
-    hear(anew, 2.0, client.gh.comm_state_machine.action_goal.goal_id)
+    receive_status(restarted, 2.0, client.gh.comm_state_machine.action_goal.goal_id)
     assert not goal_is_lost(client, sent_to)
 
 
 @pytest.fixture
 def server(monkeypatch):
-    """A server of an action without a master; ``on_time_jump`` is called when time has jumped back."""
-    nobody = SimpleNamespace(publish=lambda message: None, shutdown=lambda: None)
+    """An action server without a master; ``on_time_jump`` simulates a jump back of time."""
+    endpoint = SimpleNamespace(publish=lambda message: None, shutdown=lambda: None)
     for name in ("Publisher", "Subscriber", "Timer"):
-        monkeypatch.setattr(rospy, name, lambda *_, **__: nobody)
+        monkeypatch.setattr(rospy, name, lambda *_, **__: endpoint)
     monkeypatch.setattr(rospy, "get_param", lambda _, default=None: default)
     monkeypatch.setattr(rospy, "has_param", lambda _: False)
     monkeypatch.setattr(rospy, "search_param", lambda _: None)
@@ -132,7 +132,7 @@ def goal_at(seconds):
 
 
 @pytest.mark.parametrize("is_over", (True, False))
-def test_after_time_was_set_back_goals_are_taken_whatever_the_last_one_was_stamped(server, is_over):
+def test_after_time_has_jumped_back_goals_are_accepted_whatever_the_last_stamp(server, is_over):
     server.action_server.internal_goal_callback(goal_at(80))
     server.accept_new_goal()
     if is_over:

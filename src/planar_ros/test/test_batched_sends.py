@@ -1,4 +1,4 @@
-"""What is told to those who look on comes in one piece, in order, and a peer that has gone harms nobody."""
+"""Messages to observers are batched, in order, and a closed connection affects no other."""
 
 import socket
 import threading
@@ -15,7 +15,7 @@ BROKEN_SECONDS = 5.0
 
 @pytest.fixture
 def connect(monkeypatch, connected):
-    """Connects a node to a topic, by default one that looks on; this thread saves its sends."""
+    """Connects a node to a topic, by default an observer; this thread batches its sends."""
     monkeypatch.setattr(LockstepConnection, "members", frozenset(("/sim_bridge", "/amcl")))
     monkeypatch.setattr(LockstepConnection, "observers", frozenset((REFEREE,)))
     monkeypatch.setattr(LockstepConnection, "batching_thread", threading.get_ident())
@@ -29,7 +29,7 @@ def connect(monkeypatch, connected):
     transport.flush()
 
 
-def heard(end):
+def received(end):
     try:
         return end.recv(1024)
     except socket.timeout:
@@ -37,19 +37,19 @@ def heard(end):
 
 
 @pytest.mark.parametrize("node, topic", [(REFEREE, TOPIC), (REFEREE, CLOCK_TOPIC), ("/rviz", CLOCK_TOPIC)])
-def test_messages_are_kept_back_until_they_are_flushed(connect, node, topic):
+def test_messages_to_observers_are_batched_until_flushed(connect, node, topic):
     far, connection = connect(node, topic)
     for word in (b"one ", b"two ", b"three"):
         connection.write_data(word)
-    assert heard(far) == b""
+    assert received(far) == b""
     transport.flush()
-    assert heard(far) == b"one two three"
+    assert received(far) == b"one two three"
 
 
-def test_who_does_not_look_on_hears_at_once(connect):
+def test_a_node_that_is_no_observer_receives_at_once(connect):
     far, connection = connect("/rviz")
     connection.write_data(b"now")
-    assert heard(far) == b"now"
+    assert received(far) == b"now"
 
 
 def test_another_thread_sends_at_once_and_in_order(connect):
@@ -58,19 +58,19 @@ def test_another_thread_sends_at_once_and_in_order(connect):
     thread = threading.Thread(target=connection.write_data, args=(b"second",))
     thread.start()
     thread.join()
-    assert heard(far) in (b"first ", b"first second")
+    assert received(far) in (b"first ", b"first second")
     assert connection.count == 2
 
 
-def test_no_more_than_so_many_wait_though_nobody_flushes(connect):
+def test_a_batch_is_bounded_without_a_flush(connect):
     far, connection = connect()
     for _ in range(MAX_BATCH + 1):
         connection.write_data(b".")
-    assert len(heard(far)) >= MAX_BATCH
+    assert len(received(far)) >= MAX_BATCH
 
 
-def test_a_peer_that_has_gone_is_left_to_the_next_message(connect):
-    """rospy removes a connection whose message meets an error; who flushes has none to remove."""
+def test_a_closed_connection_raises_at_the_next_message_and_not_at_the_flush(connect):
+    """rospy removes a connection when writing a message raises; flush() has no message to attribute it to."""
     far, connection = connect()
     far.close()
     end, errors = time.monotonic() + BROKEN_SECONDS, []

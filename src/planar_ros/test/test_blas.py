@@ -15,16 +15,16 @@ def two_threads():
     assert threads() == {2}
 
 
-def test_blas_has_one_thread():
+def test_blas_is_limited_to_one_thread():
     use_one_blas_thread()
     assert threads() == {1}
 
 
-def test_a_replay_has_one_too():
+def test_a_replay_uses_one_blas_thread():
     class Parser:
         def parse_args(self, arguments):
             return arguments
 
-    seen = []
-    assert run_replay(Parser(), lambda arguments: seen.append(threads()) or 0, []) == 0
-    assert seen == [{1}]
+    counts = []
+    assert run_replay(Parser(), lambda arguments: counts.append(threads()) or 0, []) == 0
+    assert counts == [{1}]

@@ -1,4 +1,4 @@
-"""Many connect to a node at once, and it to many."""
+"""Many simultaneous connections to and from a node."""
 
 import socket
 import threading
@@ -12,7 +12,7 @@ from rospy.impl.tcpros_base import TCPServer
 
 from planar_ros.node.connections import extend_listen_backlog, merge_publisher_updates
 
-# TCP tries again after 1 s.
+# Below TCP's first retransmission after 1 s.
 SECONDS = 0.5
 
 
@@ -25,7 +25,7 @@ def server(monkeypatch):
     server.shutdown()
 
 
-def test_who_connects_to_a_node_that_is_busy_need_not_try_again(server):
+def test_connections_to_a_busy_node_need_no_tcp_retry(server):
     with ExitStack() as connections:
         for _ in range(60):
             address = ("127.0.0.1", server.port)
@@ -33,17 +33,17 @@ def test_who_connects_to_a_node_that_is_busy_need_not_try_again(server):
 
 
 @pytest.fixture
-def told(monkeypatch):
-    """The publishers that a node connects to, as it is told of ``updates``."""
+def connect_after(monkeypatch):
+    """Returns the publishers that a node connects to after publisher updates from the master."""
     monkeypatch.setattr(RegManager, "publisher_update", RegManager.publisher_update)
     merge_publisher_updates()
 
     def connected(number, *updates):
-        asked, enough = [], threading.Event()
+        requested, enough = [], threading.Event()
 
         def connect(topic, uri):
-            asked.append((topic, uri))
-            if len(asked) == number:
+            requested.append((topic, uri))
+            if len(requested) == number:
                 enough.set()
             return 1, "", 0
 
@@ -56,16 +56,16 @@ def told(monkeypatch):
         enough.wait(SECONDS)
         handler.done = True
         thread.join()
-        return sorted(asked)
+        return sorted(requested)
 
     return connected
 
 
-def test_the_news_of_a_publisher_outlives_an_answer_from_before(told):
-    assert told(1, ("/scan", ["http://one"]), ("/scan", [])) == [("/scan", "http://one")]
+def test_an_outdated_empty_update_does_not_drop_a_new_publisher(connect_after):
+    assert connect_after(1, ("/scan", ["http://one"]), ("/scan", [])) == [("/scan", "http://one")]
 
 
-def test_each_publisher_is_connected_to_once(told):
+def test_each_publisher_is_connected_to_once(connect_after):
     updates = ("/scan", ["http://one"]), ("/tf", ["http://one"]), ("/scan", ["http://two", "http://one"])
     every = [("/scan", "http://one"), ("/scan", "http://two"), ("/tf", "http://one")]
-    assert told(3, *updates) == every
+    assert connect_after(3, *updates) == every

@@ -43,6 +43,6 @@ def test_a_signal_ends_a_process_whose_imports_catch_everything(tmp_path, number
     assert process.returncode == 128 + number
 
 
-def test_the_function_gets_its_arguments_and_the_usual_handlers(tmp_path):
+def test_the_function_receives_its_arguments_and_default_signal_handlers(tmp_path):
     process = start(tmp_path, PLAIN, "hello")
     assert process.communicate(timeout=10.0)[0] == "hello\n"

@@ -1,4 +1,4 @@
-"""What a node in step has sent before all hang up is told with the moment's answer."""
+"""Messages that a synchronized node sends before shutdown are counted and delivered."""
 
 import threading
 import time
@@ -16,7 +16,7 @@ CHANNEL = f"{SENDER} {RECEIVER} {TOPIC}"
 
 @pytest.fixture
 def publisher(monkeypatch):
-    """A topic without anybody who listens to it yet; its node is in step with the receiver."""
+    """A publisher without connections yet, whose node is synchronized with the receiver."""
     found = SimpleNamespace(
         resolved_name=TOPIC,
         impl=SimpleNamespace(connections=[], latch=None),
@@ -33,7 +33,7 @@ def publisher(monkeypatch):
 
 @pytest.fixture
 def connect(publisher, connected):
-    """Connects the receiver; returns its end, and what is then written to."""
+    """Connects the receiver; returns its socket and the connection to write to."""
 
     def connect():
         far, connection = connected(RECEIVER, TOPIC)
@@ -43,8 +43,8 @@ def connect(publisher, connected):
     return connect
 
 
-def hang_up_after_reading(far, publisher):
-    """As rospy does it: a node whose publisher says no more hangs up, and its connection is removed."""
+def close_after_reading(far, publisher):
+    """Do as rospy: a subscriber closes after its publisher, and the connection is removed."""
 
     def read():
         while far.recv(1024):
@@ -57,22 +57,22 @@ def hang_up_after_reading(far, publisher):
     return reading
 
 
-def test_last_words_are_counted_though_their_connection_has_been_removed(publisher, connect):
+def test_messages_sent_on_shutdown_are_counted_after_their_connection_is_removed(publisher, connect):
     far, connection = connect()
     connection.write_data(b"setting down")
     assert transport.sent(SENDER) == {CHANNEL: 1}
     connection.write_data(b"delivered")
-    reading = hang_up_after_reading(far, publisher)
+    reading = close_after_reading(far, publisher)
     flush.flush_and_close(publisher)
     reading.join(5.0)
     assert publisher.impl.connections == []
     assert transport.sent(SENDER) == {CHANNEL: 2}
 
 
-def test_who_connects_anew_has_had_nothing(publisher, connect):
+def test_a_new_connection_starts_at_zero_messages(publisher, connect):
     far, connection = connect()
     connection.write_data(b"delivered")
-    reading = hang_up_after_reading(far, publisher)
+    reading = close_after_reading(far, publisher)
     flush.flush_and_close(publisher)
     reading.join(5.0)
     connect()
@@ -81,7 +81,7 @@ def test_who_connects_anew_has_had_nothing(publisher, connect):
     assert transport.sent(SENDER) == {}
 
 
-def test_who_leaves_meanwhile_is_not_waited_for(publisher, monkeypatch):
+def test_a_subscriber_that_disconnects_is_not_waited_for(publisher, monkeypatch):
     counts = iter((1, 1))
     monkeypatch.setattr(topics, "count_subscribers", lambda topic: next(counts, 0))
     started = time.monotonic()
@@ -89,17 +89,17 @@ def test_who_leaves_meanwhile_is_not_waited_for(publisher, monkeypatch):
     assert time.monotonic() - started < flush.PATIENCE_SECONDS / 2
 
 
-@pytest.mark.parametrize("is_in_step", (True, False))
-def test_a_latched_word_is_heard_by_who_has_come_just_now(publisher, connect, monkeypatch, is_in_step):
-    if not is_in_step:
+@pytest.mark.parametrize("is_synchronized", (True, False))
+def test_a_latched_message_reaches_a_new_subscriber(publisher, connect, monkeypatch, is_synchronized):
+    if not is_synchronized:
         monkeypatch.setattr(LockstepConnection, "members", frozenset())
     far, connection = connect()
     publisher.impl.latch = b"latched"
-    rospy_sends_it = threading.Timer(0.1, lambda: connection.write_data(publisher.impl.latch))
-    rospy_sends_it.start()
-    heard = []
-    reading = threading.Thread(target=lambda: heard.extend(iter(lambda: far.recv(1024), b"")))
+    sending = threading.Timer(0.1, lambda: connection.write_data(publisher.impl.latch))
+    sending.start()
+    received = []
+    reading = threading.Thread(target=lambda: received.extend(iter(lambda: far.recv(1024), b"")))
     reading.start()
     flush.flush_and_close(publisher, patience=1.0)
     reading.join(10.0)
-    assert b"".join(heard) == b"latched"
+    assert b"".join(received) == b"latched"

@@ -1,4 +1,4 @@
-"""Messages are sent at once, in order and whole, and a slow subscriber holds up nobody."""
+"""Messages are sent immediately, in order and complete, and a slow subscriber delays no other."""
 
 import socket
 import threading
@@ -10,7 +10,7 @@ from planar_ros.node.connections import ImmediateConnection
 
 
 class Transport:
-    """As much of a TCPROSTransport as a connection uses."""
+    """The part of TCPROSTransport that a connection uses."""
 
     def __init__(self, end):
         self.socket, self.done, self.stat_bytes, self.stat_num_msg = end, False, 0, 0
@@ -40,7 +40,7 @@ def read(end, count):
     return content
 
 
-def test_what_fits_is_sent_by_the_caller(ends):
+def test_messages_that_fit_the_socket_buffer_are_sent_by_the_calling_thread(ends):
     transport, far = ends
     connection = ImmediateConnection(transport, 10)
     for number in range(100):
@@ -50,7 +50,7 @@ def test_what_fits_is_sent_by_the_caller(ends):
     transport.close()
 
 
-def test_a_slow_subscriber_holds_up_nobody_and_gets_whole_messages_in_order(ends):
+def test_a_slow_subscriber_does_not_block_and_receives_complete_messages_in_order(ends):
     transport, far = ends
     connection = ImmediateConnection(transport, 3)
     size = 50_000
@@ -69,7 +69,7 @@ def test_a_slow_subscriber_holds_up_nobody_and_gets_whole_messages_in_order(ends
     transport.close()
 
 
-def test_an_error_is_told_by_the_next_message(ends):
+def test_an_error_is_raised_by_the_next_message(ends):
     transport, far = ends
     connection = ImmediateConnection(transport, 3)
     far.close()

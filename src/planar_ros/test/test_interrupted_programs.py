@@ -1,4 +1,4 @@
-"""A program that is asked to end while the master lets it wait ends."""
+"""Programs end on a signal while they wait for the master."""
 
 import signal
 import subprocess
@@ -8,14 +8,14 @@ import time
 import pytest
 from slow_master import slow_master
 
-# Of a machine that has other things to do; else two.
+# The first is for a loaded machine; an idle one needs 2 s.
 END_SECONDS, ANSWER_SECONDS = 40.0, 1.0
 SAVER = "from map_lite.ros.map_saver import main; main()"
 DRIVER = "from home_service import Commander; Commander(); print('goes on')"
 
 
-def ending(code, topic, number):
-    """The exit code and output of a program which the signal finds while it subscribes to the topic."""
+def interrupt_program(code, topic, number):
+    """Return exit code and output of a program that receives a signal while it subscribes to a topic."""
     started = []
 
     def interrupt():
@@ -34,10 +34,10 @@ def ending(code, topic, number):
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_map_saver_has_saved_nothing_then(number):
-    returned, _ = ending(SAVER, "/map", number)
+def test_a_map_saver_ends_without_a_map(number):
+    returned, _ = interrupt_program(SAVER, "/map", number)
     assert returned in (130, 128 + number)
 
 
-def test_a_script_with_a_commander_goes_on_to_its_end_without_ros():
-    assert ending(DRIVER, "/tf", signal.SIGINT) == (0, "goes on\n")
+def test_a_script_with_a_commander_runs_to_its_end_without_ros():
+    assert interrupt_program(DRIVER, "/tf", signal.SIGINT) == (0, "goes on\n")

@@ -1,4 +1,4 @@
-"""What a replay does about memory, in a process of its own, for which it holds to its end."""
+"""Memory of large arrays in a replay, in a child process because mallopt applies to a whole process."""
 
 import subprocess
 import sys
@@ -22,6 +22,6 @@ print(resident() - before)
 """
 
 
-def test_what_was_taken_for_a_moment_is_given_back():
+def test_memory_of_temporary_large_arrays_is_returned():
     done = subprocess.run([sys.executable, "-c", FRAGMENTED], stdout=subprocess.PIPE, check=True)
     assert int(done.stdout) < 4e6

@@ -1,4 +1,4 @@
-"""A node that is ending is not in step any more, and does not ask to be."""
+"""A node that is shutting down does not ask to be synchronized."""
 
 import threading
 import time
@@ -11,12 +11,12 @@ from planar_ros.lockstep import LockstepClient
 
 @pytest.fixture
 def step(monkeypatch):
-    """That of a node which is ready; ``said``: its answers."""
+    """The lock-step client of a node that is ready; ``answers``: what it has sent."""
     monkeypatch.setattr(rospy, "get_name", lambda: "/amcl")
     monkeypatch.setattr(rospy, "get_param", lambda _, default=None: default)
     step = LockstepClient()
-    step.said = []
-    monkeypatch.setattr(step, "_answer", step.said.append)
+    step.answers = []
+    monkeypatch.setattr(step, "_answer", step.answers.append)
     return step
 
 
@@ -31,12 +31,12 @@ def ask_for_a_while(step, monkeypatch):
     asking.join(10.0)
 
 
-def test_a_node_asks_to_be_in_step(step, monkeypatch):
+def test_a_ready_node_asks_to_be_synchronized(step, monkeypatch):
     ask_for_a_while(step, monkeypatch)
-    assert step.said
+    assert step.answers
 
 
-def test_a_node_that_is_ending_does_not(step, monkeypatch):
+def test_a_node_that_is_shutting_down_does_not_ask(step, monkeypatch):
     monkeypatch.setattr(rospy.core, "_in_shutdown", True)
     ask_for_a_while(step, monkeypatch)
-    assert not step.said
+    assert not step.answers

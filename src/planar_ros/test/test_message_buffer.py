@@ -1,4 +1,4 @@
-"""Messages that wait for their moment."""
+"""Messages are delivered at the logical instant for which they were counted."""
 
 import threading
 from io import BytesIO
@@ -16,13 +16,13 @@ CHANNEL = ("/state", "/pick_objects")
 
 
 @pytest.fixture
-def heard(monkeypatch):
-    """What the callbacks of subscribers have been given."""
-    heard = []
+def received(monkeypatch):
+    """The messages that subscribers' callbacks have received."""
+    received = []
     monkeypatch.setattr(
-        module, "_receive", lambda _to, messages, _by: heard.extend(each.data for each in messages)
+        module, "_receive", lambda _to, messages, _by: received.extend(each.data for each in messages)
     )
-    return heard
+    return received
 
 
 @pytest.fixture
@@ -46,42 +46,42 @@ def connection():
 SUBSCRIBER = SimpleNamespace(resolved_name="/state", queue_size=None, callbacks=[(None, None)])
 
 
-def take(buffer, by, *words):
+def receive(buffer, by, *words):
     for word in words:
         content = BytesIO()
         String(word).serialize(content)
         buffer._take(SUBSCRIBER, [SerializedMessage(content.getvalue())], by)
 
 
-def test_what_waits_is_handed_on_when_its_moment_has_come(buffer, heard):
-    take(buffer, connection(), "going", "picking up")
-    assert heard == []
+def test_buffered_messages_are_delivered_when_released(buffer, received):
+    receive(buffer, connection(), "going", "picking up")
+    assert received == []
     assert buffer.release({CHANNEL: 1}) == []
-    assert heard == ["going"]
+    assert received == ["going"]
     assert buffer.release({CHANNEL: 2}) == []
-    assert heard == ["going", "picking up"]
+    assert received == ["going", "picking up"]
 
 
-def test_the_last_word_is_heard_though_its_connection_has_been_made_anew(buffer, heard):
-    """rospy of Debian 11 connects again, by the same object, to who has closed a connection."""
+def test_the_last_message_is_delivered_after_its_connection_was_reopened(buffer, received):
+    """rospy of Debian 11 reopens a closed connection with the same object."""
     by = connection()
-    take(buffer, by, "going", "picking up")
+    receive(buffer, by, "going", "picking up")
     buffer.release({CHANNEL: 2})
-    take(buffer, by, "delivered")
+    receive(buffer, by, "delivered")
     by.socket = object()
-    take(buffer, by, "delivered")  # which is latched
-    buffer.release({CHANNEL: 1})  # counted anew
-    assert heard == ["going", "picking up", "delivered", "delivered"]
+    receive(buffer, by, "delivered")  # which is latched
+    buffer.release({CHANNEL: 1})  # counted from zero
+    assert received == ["going", "picking up", "delivered", "delivered"]
 
 
-def test_the_last_word_of_a_node_that_has_died_is_heard(buffer, heard):
-    take(buffer, connection(), "going")
-    take(buffer, connection(), "going again")
+def test_the_last_message_of_a_node_that_has_died_is_delivered(buffer, received):
+    receive(buffer, connection(), "going")
+    receive(buffer, connection(), "going again")
     buffer.release({CHANNEL: 1})
-    assert heard == ["going", "going again"]
+    assert received == ["going", "going again"]
 
 
-def test_what_is_handed_on_just_now_has_not_come_before_its_callback_is_over(buffer, monkeypatch):
+def test_a_message_counts_as_received_only_after_its_callback_has_returned(buffer, monkeypatch):
     buffer.members = frozenset()
     has_begun, may_end, is_over = (threading.Event() for _ in range(3))
 
@@ -92,11 +92,11 @@ def test_what_is_handed_on_just_now_has_not_come_before_its_callback_is_over(buf
 
     monkeypatch.setattr(module, "_receive", call_back)
     monkeypatch.setitem(rospy.topics.get_topic_manager().subs, "/state", SUBSCRIBER)
-    taking = threading.Thread(target=take, args=(buffer, connection(), "going"))
-    taking.start()
+    receiving = threading.Thread(target=receive, args=(buffer, connection(), "going"))
+    receiving.start()
     assert has_begun.wait(10.0)
     buffer.members = frozenset(("/pick_objects",))
     threading.Timer(0.1, may_end.set).start()
     assert buffer.release({CHANNEL: 1}) == []
     assert is_over.is_set()
-    taking.join(10.0)
+    receiving.join(10.0)

@@ -13,26 +13,26 @@ from planar.geometry.limits import MAX_COORDINATE  # noqa: E402
 from planar_ros.messages import conversion as messages  # noqa: E402
 
 
-def test_a_pose_survives_the_journey_through_a_message():
+def test_a_pose_is_unchanged_by_conversion_to_a_message_and_back():
     pose = Pose2(1.0, -2.0, 2.5)
     assert messages.pose2_from_msg(messages.pose2_to_msg(pose)).as_array() == pytest.approx(pose.as_array())
 
 
 @pytest.mark.parametrize("length", [0.01, 1.0, 4.0])
-def test_a_quaternion_that_is_not_normalised_still_has_a_yaw(length):
+def test_yaw_of_a_quaternion_that_is_not_normalized(length):
     half = 0.6
     quaternion = Quaternion(0.0, 0.0, length * math.sin(half), length * math.cos(half))
     assert messages.yaw_of(quaternion) == pytest.approx(1.2)
 
 
-def test_a_grid_survives_the_journey_through_a_message():
+def test_a_grid_is_unchanged_by_conversion_to_a_message_and_back():
     grid = grid_from_picture("#.?\n..#", resolution=0.25, origin=Pose2(1.0, 2.0, 0.5))
     back = messages.grid_from_msg(messages.grid_to_msg(grid, rospy.Time(1), "map"))
     assert back.cells.tolist() == grid.cells.tolist()
     assert (back.resolution, back.origin.yaw) == (grid.resolution, pytest.approx(0.5))
 
 
-def test_older_codes_leading_slash_is_dropped_from_frames():
+def test_a_leading_slash_is_removed_from_frame_names():
     assert messages.frame_name("/map") == messages.frame_name("map") == "map"
 
 
@@ -45,17 +45,17 @@ def laser_scan(**changed):
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, 1e300])
 @pytest.mark.parametrize("name", ["angle_min", "angle_increment", "range_min"])
-def test_a_scan_message_of_senseless_numbers_is_refused(name, value):
+def test_a_scan_message_with_invalid_numbers_is_rejected(name, value):
     with pytest.raises(PlanarError, match=name):
         messages.scan_from_msg(laser_scan(**{name: value}), Pose2())
 
 
-def test_a_laser_without_end_sees_as_far_as_any():
+def test_an_infinite_range_max_is_limited():
     assert messages.scan_from_msg(laser_scan(range_max=math.inf), Pose2()).range_max == MAX_COORDINATE
 
 
 @pytest.mark.parametrize("size", [(3, 2), (0, 5), (2**32 - 1, 2**32 - 1)])
-def test_a_map_message_whose_data_is_not_as_long_as_it_says_is_refused(size):
+def test_a_map_message_with_data_of_the_wrong_length_is_rejected(size):
     message = OccupancyGrid()
     message.info.resolution, message.info.width, message.info.height = 0.05, *size
     message.data = [0] * 5
@@ -64,12 +64,12 @@ def test_a_map_message_whose_data_is_not_as_long_as_it_says_is_refused(size):
 
 
 @pytest.mark.parametrize("x", [math.nan, math.inf, 1e18, -1e300])
-def test_a_pose_message_at_which_nothing_can_be_is_refused(x):
+def test_a_pose_message_out_of_range_is_rejected(x):
     with pytest.raises(messages.MessageError):
         messages.pose2_from_msg(Pose(position=Point(x, 0.0, 0.0)))
 
 
 @pytest.mark.parametrize("omega", [math.nan, 1e308])
-def test_a_velocity_that_no_robot_has_is_refused(omega):
+def test_a_velocity_out_of_range_is_rejected(omega):
     with pytest.raises(messages.MessageError):
         messages.twist2_from_msg(Twist(angular=Vector3(0.0, 0.0, omega)))

@@ -17,7 +17,7 @@ def write_bag(path, start, count, chunk_bytes=4000):
     return path
 
 
-def test_the_parts_of_a_recording_are_played_in_the_order_of_time(tmp_path):
+def test_the_bags_of_a_recording_are_read_in_time_order(tmp_path):
     write_bag(tmp_path / "b.bag", 1.0, 5)
     write_bag(tmp_path / "a.bag", 11.0, 5)
     recording = Recording([tmp_path])
@@ -29,7 +29,7 @@ def test_the_parts_of_a_recording_are_played_in_the_order_of_time(tmp_path):
     assert recording.truncations == []
 
 
-def test_a_recording_that_was_cut_off_is_played_as_far_as_it_goes_and_left_as_it_is(tmp_path):
+def test_a_truncated_bag_is_read_up_to_its_end_and_not_modified(tmp_path):
     path = write_bag(tmp_path / "cut.bag.active", 1.0, 200)
     path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
     before = path.read_bytes()
@@ -41,12 +41,12 @@ def test_a_recording_that_was_cut_off_is_played_as_far_as_it_goes_and_left_as_it
     assert path.read_bytes() == before
 
 
-def test_what_holds_nothing_to_play_is_refused_by_name(tmp_path):
+def test_an_error_names_the_path_without_messages(tmp_path):
     with pytest.raises(BagError, match="none.bag: no such bag"):
         bag_paths([tmp_path / "none.bag"])
     with pytest.raises(BagError, match="no bag in this folder"):
         bag_paths([tmp_path])
-    with pytest.raises(BagError, match="empty.bag: there is no message in it"):
+    with pytest.raises(BagError, match="empty.bag: the bag has no messages"):
         Recording([write_bag(tmp_path / "empty.bag", 0.0, 0)])
     (tmp_path / "text.bag").write_text("no bag")
     with pytest.raises(BagError, match="text.bag: not a readable bag"):
@@ -57,8 +57,8 @@ def test_what_holds_nothing_to_play_is_refused_by_name(tmp_path):
         Recording([cut])
 
 
-def test_of_several_bags_the_broken_one_is_named(tmp_path):
-    """Also if the bags are not named in the order of time."""
+def test_an_error_names_the_broken_one_of_several_bags(tmp_path):
+    """Also if the bags are not given in time order."""
     early, late = (
         write_bag(tmp_path / "early.bag", 1.0, 5),
         write_bag(tmp_path / "late.bag", 11.0, 200, 10**6),

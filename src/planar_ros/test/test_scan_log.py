@@ -12,7 +12,7 @@ LASER_IN_BASE = Pose2(0.1, 0.0, 0.0)
 
 
 def write_bag(path, static):
-    """Scans of a robot that drives on at 1 m/s, and where its laser is, by the number of the scan, of 20."""
+    """Write 20 scans of a robot at 1 m/s; ``static``: mounting pose of the laser by number of the scan."""
     with rosbag.Bag(str(path), "w") as bag:
         for i in range(20):
             stamp = rospy.Time.from_sec(100.0 + 0.1 * i)
@@ -38,12 +38,12 @@ def test_static_transforms_hold_from_the_start_wherever_they_are_in_the_bag(tmp_
     assert [one.base_in_odom.x for one in logged] == pytest.approx([0.1 * i for i in range(20)])
 
 
-def test_static_transforms_that_contradict_each_other_are_named(tmp_path):
+def test_a_warning_names_contradicting_static_transforms(tmp_path):
     warnings, moved = [], Pose2(0.3, 0.0, 0.0)
     bag = write_bag(tmp_path / "moved.bag", {0: LASER_IN_BASE, 5: LASER_IN_BASE, 10: moved, 15: moved})
     logged = list(ScanLog(bag, "/scan", "base_link", "odom", warnings.append))
     assert warnings == [
-        f"{bag}: /tf_static contradicts itself about base_link -> laser (from now on the later one holds), "
+        f"{bag}: /tf_static contradicts itself about base_link -> laser (using the later one from here on), "
         "at stamp 101.000, 53 % into the bag"
     ]
     assert [one.scan.laser_in_base for one in logged] == 11 * [LASER_IN_BASE] + 9 * [moved]

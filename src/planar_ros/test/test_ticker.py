@@ -1,4 +1,4 @@
-"""Work that is due again and again, by a clock that a test sets."""
+"""Periodic callbacks in ROS time, with a clock set by the test."""
 
 import threading
 import time
@@ -13,7 +13,7 @@ PERIOD = 0.1
 
 @pytest.fixture
 def clock(monkeypatch):
-    """Sets ROS time, in seconds, and wakes whoever waits for it."""
+    """Sets ROS time [s] and wakes waiting threads."""
     monkeypatch.setattr(rospy.rostime, "_rostime_initialized", True)
     rospy.rostime._set_rostime(rospy.Time(0))
 
@@ -25,15 +25,15 @@ def clock(monkeypatch):
 
 
 class Node:
-    """Works by a ticker; ``in_first_tick`` is called then."""
+    """A node with a ticker; ``in_first_tick`` is called within the first tick."""
 
-    def __init__(self, monkeypatch, in_first_tick=lambda: None, is_in_step=lambda: False):
-        self.ticks, self.on_time_jump = [], 0
+    def __init__(self, monkeypatch, in_first_tick=lambda: None, is_synchronized=lambda: False):
+        self.ticks, self.time_jumps = [], 0
         self._in_first_tick, self._has_ended = in_first_tick, threading.Event()
         monkeypatch.setattr(rospy, "is_shutdown", self._has_ended.is_set)
-        self.ticker = Ticker(lambda: PERIOD, self._tick, self._begin)
+        self.ticker = Ticker(lambda: PERIOD, self._tick, self._on_time_jump)
         before = set(threading.enumerate())
-        self.ticker.start(is_in_step, lambda now: None)
+        self.ticker.start(is_synchronized, lambda now: None)
         (self._thread,) = set(threading.enumerate()) - before
 
     def _tick(self, now):
@@ -41,8 +41,8 @@ class Node:
         if len(self.ticks) == 1:
             self._in_first_tick()
 
-    def _begin(self):
-        self.on_time_jump += 1
+    def _on_time_jump(self):
+        self.time_jumps += 1
 
     def end(self):
         self._has_ended.set()
@@ -57,31 +57,31 @@ def wait_until(is_so):
         time.sleep(0.001)
 
 
-def test_a_jump_back_of_time_in_the_middle_of_a_tick_is_noticed(clock, monkeypatch):
+def test_a_jump_back_of_time_during_a_tick_is_detected(clock, monkeypatch):
     node = Node(monkeypatch, in_first_tick=lambda: clock(80.0))
     clock(100.0)
-    wait_until(lambda: node.on_time_jump == 1 and node.ticks == [100.0, 80.0])
+    wait_until(lambda: node.time_jumps == 1 and node.ticks == [100.0, 80.0])
     clock(80.0 + 1.5 * PERIOD)
     wait_until(lambda: len(node.ticks) == 3)
-    assert node.on_time_jump == 1
+    assert node.time_jumps == 1
     node.end()
 
 
-def test_in_step_a_jump_back_is_the_business_of_the_moment_alone(clock, monkeypatch):
-    is_in_step = threading.Event()
-    node = Node(monkeypatch, is_in_step=is_in_step.is_set)
+def test_in_lockstep_a_jump_back_is_handled_by_poll_only(clock, monkeypatch):
+    is_synchronized = threading.Event()
+    node = Node(monkeypatch, is_synchronized=is_synchronized.is_set)
     clock(100.0)
     wait_until(lambda: node.ticks == [100.0])
-    is_in_step.set()
+    is_synchronized.set()
     clock(80.0)
     node.ticker.poll()
-    assert (node.ticks, node.on_time_jump) == ([100.0, 80.0], 1)
+    assert (node.ticks, node.time_jumps) == ([100.0, 80.0], 1)
     time.sleep(0.3)
-    assert (node.ticks, node.on_time_jump) == ([100.0, 80.0], 1)
+    assert (node.ticks, node.time_jumps) == ([100.0, 80.0], 1)
     node.end()
 
 
-def test_a_shorter_period_holds_at_once_and_is_no_jump_of_time(clock):
+def test_a_shorter_period_applies_at_once_and_is_no_time_jump(clock):
     periods, ticks, jumps = [0.5], [], []
     ticker = Ticker(lambda: periods[0], lambda now: ticks.append(now.to_sec()), lambda: jumps.append(True))
     for seconds, period in ((1.0, 0.5), (1.0625, 0.125), (1.25, 0.125)):

@@ -1,4 +1,4 @@
-"""Unit tests of what tf's listener hands on when time jumps back."""
+"""Unit tests of the transform filter, with jumps back of time."""
 
 from types import SimpleNamespace
 
@@ -32,9 +32,9 @@ def x_at(buffer, parent, child, second):
     return buffer.lookup_transform(parent, child, stamp).transform.translation.x
 
 
-def test_a_word_from_before_a_jump_that_comes_after_it_is_forgotten(transform_filter, buffer):
+def test_a_transform_from_before_a_jump_that_arrives_after_it_is_discarded(transform_filter, buffer):
     add(transform_filter, "odom", "base_link", 14.0, x=7.0)
-    buffer.clear()  # somebody else saw the jump before tf did
+    buffer.clear()  # another listener has detected the jump before tf
     add(transform_filter, "odom", "base_link", 14.1, x=7.0)
     for second in (0.1, 0.2, 0.3):
         add(transform_filter, "odom", "base_link", second, x=second)
@@ -43,7 +43,7 @@ def test_a_word_from_before_a_jump_that_comes_after_it_is_forgotten(transform_fi
     assert latest.to_sec() == pytest.approx(0.3)
 
 
-def test_all_publishers_jump_each_in_its_own_time(transform_filter, buffer):
+def test_publishers_may_jump_at_different_times(transform_filter, buffer):
     for second in (14.0, 0.1):
         add(transform_filter, "odom", "base_link", second, x=second)
     add(transform_filter, "map", "odom", 14.2, by="amcl")
@@ -54,7 +54,7 @@ def test_all_publishers_jump_each_in_its_own_time(transform_filter, buffer):
     assert buffer.get_latest_common_time("map", "base_link").to_sec() == pytest.approx(0.3)
 
 
-def test_one_who_is_behind_another_has_not_jumped(transform_filter, buffer):
+def test_a_publisher_that_lags_behind_another_has_not_jumped(transform_filter, buffer):
     add(transform_filter, "map", "odom", 14.0, by="amcl")
     add(transform_filter, "odom", "base_link", 12.0)
     add(transform_filter, "map", "odom", 13.5, by="amcl")
@@ -67,15 +67,15 @@ def test_one_who_is_behind_another_has_not_jumped(transform_filter, buffer):
     [SimpleNamespace(secs=-1, nsecs=0), rospy.Time(2**31, 5), rospy.Time(2**32 - 1, 999_999_999)],
     ids=str,
 )
-def test_stamps_that_mean_nothing_are_left_out(transform_filter, buffer, stamp, is_static):
-    """tf2 ends the interpreter for differences of time that it cannot hold."""
+def test_transforms_with_invalid_stamps_are_ignored(transform_filter, buffer, stamp, is_static):
+    """tf2 ends the process if a time difference overflows."""
     add(transform_filter, "odom", "base_link", 1.0)
     bad = transform_msg(Pose2(), "odom", "base_link", stamp)
     transform_filter.add([bad], "simulator", is_static)
     assert buffer.get_latest_common_time("odom", "base_link").to_sec() == pytest.approx(1.0)
 
 
-def test_what_never_moves_outlives_a_jump(transform_filter, buffer):
+def test_static_transforms_are_kept_after_a_jump(transform_filter, buffer):
     static = transform_msg(Pose2(0.1, 0.0, 0.0), "base_link", "laser", rospy.Time.from_sec(14.0))
     transform_filter.add([static], "simulator", is_static=True)
     for second in (14.0, 0.1, 0.2):

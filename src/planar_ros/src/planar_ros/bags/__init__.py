@@ -1,1 +1,1 @@
-"""Bags, read."""
+"""Reading and replaying bags without a master."""

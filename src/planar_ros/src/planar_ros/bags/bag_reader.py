@@ -1,4 +1,4 @@
-"""A bag: what is in it, its messages in order, and how far it can be read."""
+"""Reader of ROS 1 bags, including truncated and partly broken ones."""
 
 import contextlib
 import math
@@ -15,15 +15,22 @@ from planar import PlanarError
 
 TF, TF_STATIC = "/tf", "/tf_static"
 LASER_SCAN = "sensor_msgs/LaserScan"
-TICK = 1e-6
+# Margin [s] around time bounds, because a float does not hold a time to the nanosecond.
+TIME_MARGIN = 1e-6
 
 
 class BagError(PlanarError):
-    """A bag cannot be read, or not to its end; the text names it and says where it broke."""
+    """A bag is unreadable, entirely or from some point on; the text names the bag and the position."""
 
 
 class RecordedMessage(NamedTuple):
-    """A message as it was recorded; ``stamp`` is when, in seconds."""
+    """A message of a bag.
+
+    Attributes:
+        topic: Absolute topic name.
+        message: The deserialized message.
+        stamp: Time at which it was recorded [s].
+    """
 
     topic: str
     message: Any
@@ -31,25 +38,37 @@ class RecordedMessage(NamedTuple):
 
 
 class BagReader:
-    """A bag opened for reading alone; one that was cut off is read as far as it goes.
+    """Read-only view of a bag; a truncated bag is read up to its last complete chunk.
 
-    Topics have their full names, "/scan", also where they were recorded without the slash. ``types``: that of
-    each. ``foreign``: topics whose types are not installed, or otherwise than they were recorded. ``start``,
-    ``end``: seconds, 0 if it is empty. ``gap``: what is missing at its end, if anything is. Raises BagError.
+    Topic names are absolute ("/scan"), even if they were recorded without the slash.
+
+    Args:
+        path: The bag file; it is never modified.
+
+    Attributes:
+        types: Message type of each topic.
+        unavailable_topics: Topics whose message type is not installed or differs from the recorded one.
+        is_empty: Whether the bag has no messages.
+        start: Time of the first message [s]; 0 for an empty bag.
+        end: Time of the last message [s]; 0 for an empty bag.
+        truncation: Where the file was cut off, for messages to people; None for a complete bag.
+
+    Raises:
+        BagError: If the file is not a readable bag.
     """
 
     def __init__(self, path: Union[str, Path]):
         self.path = Path(path)
         self._bag, is_cut_off = _open(self.path)
         try:
-            self._look_over()
-        except Exception as error:  # as below
+            self._read_index()
+        except Exception as error:  # rosbag passes on whatever struct, bz2 and genpy raise
             raise BagError(f"{path}: not a readable bag ({error or type(error).__name__})") from None
         self.truncation: Optional[str] = None
         if is_cut_off:
             self.truncation = f"cut off {self.end - self.start:.1f} s after its start"
 
-    def _look_over(self) -> None:
+    def _read_index(self) -> None:
         sums, topics = self._bag.get_type_and_topic_info()
         self.types: Dict[str, str] = {absolute_name(topic): info.msg_type for topic, info in topics.items()}
         self.unavailable_topics = {
@@ -63,36 +82,48 @@ class BagReader:
     def messages(
         self, topics: Iterable[str], since: float = 0.0, until: float = math.inf
     ) -> Iterator[RecordedMessage]:
-        """The messages of ``topics`` in the order in which they were recorded, and when. Raises BagError.
+        """Iterate over the messages of some topics in recorded order.
 
-        ``since``, ``until``: those that were recorded between, both included, s.
+        Args:
+            topics: Topic names, with or without the leading slash.
+            since: Start of the time interval [s], inclusive.
+            until: End of the time interval [s], inclusive.
+
+        Yields:
+            The messages recorded within the interval.
+
+        Raises:
+            BagError: Where the bag is broken.
         """
         wanted = set(map(absolute_name, topics))
         spelled = [spelling for spelling, topic in self._spellings.items() if topic in wanted]
-        if not spelled or since > self.end or until < self.start:  # of no topics rosbag would make all
+        if not spelled or since > self.end or until < self.start:  # rosbag reads an empty list as all topics
             return
-        # To the nanosecond a time is no float: what lies on a bound is taken rather twice than not at all.
-        first = rospy.Time.from_sec(max(since - TICK, 0.0))
-        last = None if until >= self.end else rospy.Time.from_sec(until + TICK)
+        first = rospy.Time.from_sec(max(since - TIME_MARGIN, 0.0))
+        last = None if until >= self.end else rospy.Time.from_sec(until + TIME_MARGIN)
         reader, now = self._bag.read_messages(spelled, first, last), self.start
         while True:
             try:
                 topic, message, recorded = next(reader)
             except StopIteration:
                 return
-            except Exception as error:  # rosbag lets pass whatever struct, bz2 and genpy raise
+            except Exception as error:  # rosbag passes on whatever struct, bz2 and genpy raise
                 after = f"broken {now - self.start:.1f} s after its start"
                 raise BagError(f"{self.path}: {after} ({error or type(error).__name__})") from None
             now = recorded.to_sec()
             yield RecordedMessage(self._spellings[topic], message, now)
 
     def first_static_transforms(self) -> List[Any]:
-        """Of each frame the first on /tf_static, wherever in the bag it is.
+        """Return the first static transform of each frame, wherever in the bag it is.
 
-        They hold from the start: a recorder that joins late, or repeats them at a split, writes them late.
+        Static transforms hold from the start, but a recorder that joins late or repeats them at a split
+        writes them later.
+
+        Returns:
+            The transforms as recorded (geometry_msgs/TransformStamped).
         """
         found: Dict[str, Any] = {}
-        with contextlib.suppress(BagError):  # told by whoever reads on to where it is broken
+        with contextlib.suppress(BagError):  # raised again when the messages are read up to the broken part
             for played in self.messages([TF_STATIC]):
                 for transform in played.message.transforms:
                     found.setdefault(transform.child_frame_id, transform)
@@ -100,6 +131,7 @@ class BagReader:
 
 
 def absolute_name(topic: str) -> str:
+    """Return a topic name with exactly one leading slash."""
     return "/" + topic.lstrip("/")
 
 
@@ -109,7 +141,7 @@ def _is_installed(kind: str, md5sum: str) -> bool:
 
 
 def _open(path: Path) -> Tuple[rosbag.Bag, bool]:
-    """The bag, and whether its end is missing."""
+    """Return the open bag and whether it is truncated."""
     try:
         if path.exists() and not path.is_file():
             raise BagError(f"{path}: not a readable bag (not a regular file)")
@@ -117,13 +149,13 @@ def _open(path: Path) -> Tuple[rosbag.Bag, bool]:
     except BagError:
         raise
     except rosbag.ROSBagUnindexedException:
-        return _without_end(path), True
-    except Exception as error:  # rosbag lets pass whatever struct, bz2 and genpy raise
+        return _open_truncated(path), True
+    except Exception as error:  # rosbag passes on whatever struct, bz2 and genpy raise
         raise BagError(f"{path}: not a readable bag ({error or type(error).__name__})") from None
 
 
-def _without_end(path: Path) -> rosbag.Bag:
-    """The complete part of a bag, from a copy: rosbag repairs the file itself."""
+def _open_truncated(path: Path) -> rosbag.Bag:
+    """Open the complete chunks of a truncated bag, from a copy, because rosbag reindexes in place."""
     try:
         with tempfile.TemporaryDirectory() as folder:
             copy = str(Path(folder) / "copy.bag")
@@ -131,9 +163,9 @@ def _without_end(path: Path) -> rosbag.Bag:
             with rosbag.Bag(copy, "a", allow_unindexed=True) as broken:
                 for _ in broken.reindex():
                     pass
-            bag = rosbag.Bag(copy)  # which stays open when the folder has gone
+            bag = rosbag.Bag(copy)  # stays open after the folder is removed
         count = bag.get_message_count()
-    except Exception as error:  # rosbag lets pass whatever struct, bz2 and genpy raise
+    except Exception as error:  # rosbag passes on whatever struct, bz2 and genpy raise
         raise BagError(f"{path}: not a readable bag ({error or type(error).__name__})") from None
     if count == 0:
         raise BagError(f"{path}: cut off before the first complete chunk of messages")

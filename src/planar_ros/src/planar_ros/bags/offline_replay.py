@@ -1,4 +1,4 @@
-"""What commands share that work through a bag offline."""
+"""Shared parts of the commands that process a bag offline (amcl_lite_replay, slam_lite_replay)."""
 
 import argparse
 import ctypes
@@ -16,17 +16,23 @@ from planar_ros.bags.scan_log import LoggedScan, ScanLog
 from planar_ros.node.entry import use_one_blas_thread
 
 T = TypeVar("T")
-# Of malloc.h; and from how many bytes on an array is large, and how many may lie idle at the heap's end.
+# Parameters of mallopt, from malloc.h.
 _M_MMAP_THRESHOLD, _M_TRIM_THRESHOLD = -3, -1
-_LARGE, _SPARE = 2**20, 2**22
+# Size from which an array is mapped, and unused memory kept at the end of the heap [bytes].
+_MMAP_BYTES, _TRIM_BYTES = 2**20, 2**22
 
 
 def add_replay_options(parser: argparse.ArgumentParser, node: str) -> None:
-    """Options of every replay; ``node``: whose parameters ``--config`` holds."""
+    """Add the options that all replay commands have.
+
+    Args:
+        parser: Parser of the command.
+        node: Name of the node whose parameters ``--config`` holds, for the help text.
+    """
     parser.add_argument("bag", metavar="BAG", help="a ROS 1 bag with scans and /tf")
     parser.add_argument("--config", metavar="YAML", type=Path, help=f"parameters of {node}")
     parser.add_argument("--scan_topic", default="/scan", help="default: /scan")
-    parser.add_argument("--progress", action="store_true", help="show how far it is")
+    parser.add_argument("--progress", action="store_true", help="show a progress bar")
 
 
 def run_replay(
@@ -34,7 +40,16 @@ def run_replay(
     replay: Callable[[argparse.Namespace], int],
     arguments: Optional[List[str]],
 ) -> int:
-    """The exit code of ``replay``; 2 if it came to nothing, which is told in a line."""
+    """Run a replay command.
+
+    Args:
+        parser: Parser of the command.
+        replay: The command; takes the parsed arguments and returns the exit code.
+        arguments: Command line arguments; None for those of the process.
+
+    Returns:
+        The exit code of ``replay``, or 2 after a PlanarError, which is printed in one line.
+    """
     use_one_blas_thread()
     unmap_large_arrays()
     try:
@@ -45,26 +60,33 @@ def run_replay(
 
 
 def unmap_large_arrays() -> None:
-    """Large arrays are mapped, and unmapped when they are freed.
+    """Have glibc map large arrays, so that their memory is returned when they are freed.
 
-    Otherwise glibc takes them from its heap, where what is kept, like scans, soon lies between them.
+    Otherwise they come from the heap, which long-lived arrays such as scans fragment.
     """
     mallopt = getattr(ctypes.CDLL(None), "mallopt", None)
     if mallopt is not None:
-        mallopt(_M_MMAP_THRESHOLD, _LARGE)
-        mallopt(_M_TRIM_THRESHOLD, _SPARE)
+        mallopt(_M_MMAP_THRESHOLD, _MMAP_BYTES)
+        mallopt(_M_TRIM_THRESHOLD, _TRIM_BYTES)
 
 
 def process_scans(
-    log: ScanLog, use: Callable[[LoggedScan], None], activity: str, shows_progress: bool
+    log: ScanLog, process: Callable[[LoggedScan], None], activity: str, shows_progress: bool
 ) -> int:
-    """Hands the scans to ``use``, one by one; returns 0, 1 if the bag broke off, or 130 if interrupted.
+    """Process the scans of a bag one by one; results up to an error or interruption stay valid.
 
-    What has been made of the scans so far is good in any case.
+    Args:
+        log: Scans of the bag.
+        process: Called with each scan.
+        activity: Label of the progress bar.
+        shows_progress: Whether to show a progress bar on stderr.
+
+    Returns:
+        Exit code: 0, 1 if the bag is truncated or broken, or 130 if interrupted.
     """
     try:
-        for logged in _watched(log, activity) if shows_progress else log:
-            use(logged)
+        for logged in _with_progress(log, activity) if shows_progress else log:
+            process(logged)
     except BagError as error:
         warn(str(error))
         return 1
@@ -74,9 +96,8 @@ def process_scans(
     return 0
 
 
-def _watched(log: ScanLog, activity: str) -> Iterator[LoggedScan]:
-    """The scans; meanwhile it is shown how far they have been used."""
-    from rich.console import Console  # late: it takes memory that most replays can do without
+def _with_progress(log: ScanLog, activity: str) -> Iterator[LoggedScan]:
+    from rich.console import Console  # imported late: most replays do not need its memory
     from rich.progress import Progress
 
     with Progress(console=Console(stderr=True), transient=True) as progress:
@@ -87,20 +108,41 @@ def _watched(log: ScanLog, activity: str) -> Iterator[LoggedScan]:
 
 
 def load_settings(kind: Type[T], path: Optional[Path], also_known: Iterable[str] = ()) -> T:
-    """Settings from a YAML file, if there is one; unknown names are warned of. Raises SettingsError."""
+    """Load settings from a YAML file; warn about unknown parameters.
+
+    Args:
+        kind: Settings dataclass.
+        path: The file; None for the defaults.
+        also_known: Parameters in the file that are valid but not part of ``kind``.
+
+    Returns:
+        The settings.
+
+    Raises:
+        SettingsError: If the file is unreadable or a value is invalid.
+    """
     if path is None:
         return kind()
     settings, unknown = settings_from_yaml(kind, path)
     for name in unknown:
         if name not in also_known:
-            warn(f"{path}: {name} has no meaning here")
+            warn(f"{path}: unknown parameter {name} ignored")
     return settings
 
 
 def write_trajectory(path: Path, stamped_poses: np.ndarray) -> None:
-    """Poses (N, 4) ``[t, x, y, yaw]`` as a TUM file, or nothing at all. Raises FileWriteError."""
+    """Write a trajectory as a TUM file, atomically.
+
+    Args:
+        path: File to write.
+        stamped_poses: Poses (N, 4) ``[t, x, y, yaw]`` [s, m, m, rad].
+
+    Raises:
+        FileWriteError: If the file cannot be written.
+    """
     write_atomically(path, tum_text(stamped_poses).encode("ascii"))
 
 
 def warn(text: str) -> None:
+    """Print a warning on stderr."""
     print(f"warning: {text}", file=sys.stderr)

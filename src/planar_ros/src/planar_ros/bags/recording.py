@@ -1,4 +1,4 @@
-"""The bags of a recording, in the order of time."""
+"""Recordings that consist of several bags."""
 
 import math
 from pathlib import Path
@@ -8,9 +8,19 @@ from planar_ros.bags.bag_reader import BagError, BagReader, RecordedMessage
 
 
 class Recording:
-    """Bags that follow each other; broken ones are read as far as they go.
+    """Consecutive bags read as one recording, in time order.
 
-    ``paths``: of all of them, as they were named. ``gaps`` says which ends are missing. Raises BagError.
+    Args:
+        paths: Bag files, or folders that contain bags.
+
+    Attributes:
+        paths: All bag files, in the order given.
+        truncations: For each truncated bag its name and where it is cut off, for messages to people.
+        start: Time of the first message [s].
+        end: Time of the last message of the last bag [s].
+
+    Raises:
+        BagError: If a path has no bag, a bag is unreadable, or no bag has a message.
     """
 
     def __init__(self, paths: Sequence[Path]):
@@ -19,41 +29,61 @@ class Recording:
         self.truncations: List[str] = [f"{bag.path.name}: {bag.truncation}" for bag in bags if bag.truncation]
         self._bags = sorted((bag for bag in bags if not bag.is_empty), key=lambda bag: bag.start)
         if not self._bags:
-            raise BagError(f"{self.paths[0]}: there is no message in it")
+            raise BagError(f"{self.paths[0]}: the bag has no messages")
         self.start, self.end = self._bags[0].start, self._bags[-1].end
 
     @property
     def types(self) -> Dict[str, str]:
-        """The type of each topic."""
+        """Message type of each topic."""
         return {topic: kind for bag in self._bags for topic, kind in bag.types.items()}
 
     @property
     def unavailable_topics(self) -> Set[str]:
-        """The topics whose types are not installed, or otherwise than they were recorded."""
+        """Topics whose message type is not installed or differs from the recorded one."""
         return set().union(*(bag.unavailable_topics for bag in self._bags))
 
     def topics_of(self, *types: str) -> List[str]:
+        """Return the topics with one of these message types, sorted by name."""
         return sorted(topic for topic, kind in self.types.items() if kind in types)
 
     def messages(
         self, topics: Iterable[str], since: float = 0.0, until: float = math.inf
     ) -> Iterator[RecordedMessage]:
-        """The messages of ``topics`` in the order in which they were recorded, and when. Raises BagError.
+        """Iterate over the messages of some topics, bag by bag in recorded order.
 
-        ``since``, ``until``: those that were recorded between, both included, s.
+        Args:
+            topics: Topic names.
+            since: Start of the time interval [s], inclusive.
+            until: End of the time interval [s], inclusive.
+
+        Yields:
+            The messages recorded within the interval.
+
+        Raises:
+            BagError: Where a bag is broken.
         """
         topics = list(topics)
         for bag in self._bags:
             yield from bag.messages(topics, since, until)
 
     def first_static_transforms(self) -> List[Any]:
-        """Of each frame the first on /tf_static, wherever it is."""
+        """Return the first static transform of each frame, wherever in the recording it is."""
         every = [transform for bag in self._bags for transform in bag.first_static_transforms()]
         return list({transform.child_frame_id: transform for transform in reversed(every)}.values())
 
 
 def bag_paths(paths: Sequence[Path]) -> List[Path]:
-    """The bags that are named: files, or folders of bags, also the folder of a run. Raises BagError."""
+    """Resolve bag files, folders of bags, and folders of runs (with bags in ``bag/``).
+
+    Args:
+        paths: Files and folders.
+
+    Returns:
+        The bag files, those of a folder sorted by name.
+
+    Raises:
+        BagError: If a path does not exist or a folder has no bag.
+    """
     found: List[Path] = []
     for path in paths:
         if path.is_dir():

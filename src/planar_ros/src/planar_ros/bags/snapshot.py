@@ -1,4 +1,4 @@
-"""What stands at a moment of a recording: what one who has listened from its start holds by then."""
+"""State of a recording at some time: the messages that a subscriber from its start holds by then."""
 
 import math
 from typing import Dict, Iterable, List
@@ -7,30 +7,40 @@ from planar_ros.bags.bag_reader import TF, RecordedMessage
 from planar_ros.bags.recording import Recording
 
 MARKERS = ("visualization_msgs/Marker", "visualization_msgs/MarkerArray")
-# Most topics are found in the first of these stretches back, s; so are transforms of frames that move.
-STRETCHES = (2.0, 20.0, math.inf)
+# Intervals before the requested time [s], searched in turn; most topics and moving frames are in the first.
+SEARCH_SECONDS = (2.0, 20.0, math.inf)
 
 
-def snapshot_at(recording: Recording, topics: Iterable[str], moment: float) -> List[RecordedMessage]:
-    """The newest message of each topic, of transforms those of the last seconds, of markers all, in order.
+def snapshot_at(recording: Recording, topics: Iterable[str], stamp: float) -> List[RecordedMessage]:
+    """Return the messages needed to show a recording at some time.
 
-    ``moment``: s, itself included. Raises BagError.
+    Args:
+        recording: The recording.
+        topics: Topic names.
+        stamp: Recorded time [s], inclusive.
+
+    Returns:
+        The newest message of each topic, the transforms of the last seconds and all markers, in recorded
+        order.
+
+    Raises:
+        BagError: Where a bag is broken.
     """
     types = recording.types
-    adding = {topic for topic in topics if topic == TF or types.get(topic) in MARKERS}
-    played = list(_newest(recording, set(topics) - adding, moment).values())
-    played += recording.messages(adding & {TF}, moment - STRETCHES[0], moment)
-    played += recording.messages(adding - {TF}, until=moment)
-    return sorted(played, key=lambda each: each.stamp)
+    cumulative = {topic for topic in topics if topic == TF or types.get(topic) in MARKERS}
+    found = list(_newest(recording, set(topics) - cumulative, stamp).values())
+    found += recording.messages(cumulative & {TF}, stamp - SEARCH_SECONDS[0], stamp)
+    found += recording.messages(cumulative - {TF}, until=stamp)
+    return sorted(found, key=lambda each: each.stamp)
 
 
-def _newest(recording: Recording, topics: Iterable[str], moment: float) -> Dict[str, RecordedMessage]:
-    missing, until = set(topics), moment
+def _newest(recording: Recording, topics: Iterable[str], stamp: float) -> Dict[str, RecordedMessage]:
+    missing, until = set(topics), stamp
     found: Dict[str, RecordedMessage] = {}
-    for stretch in STRETCHES:
+    for seconds in SEARCH_SECONDS:
         if not missing:
             break
-        since = moment - stretch
+        since = stamp - seconds
         found.update({each.topic: each for each in recording.messages(missing, since, until)})
         missing -= set(found)
         until = since

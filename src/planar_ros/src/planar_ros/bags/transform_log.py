@@ -1,4 +1,4 @@
-"""The transforms of a bag as far as it has been read."""
+"""Transforms of a bag, as far as it has been read."""
 
 from typing import Any, Dict, Iterable, List, Optional, Tuple
 
@@ -12,14 +12,15 @@ from planar import Pose2
 from planar_ros.messages.conversion import frame_name, pose2_of
 from planar_ros.messages.validation import MessageError, is_stamp
 
-# Static transforms that differ by less, metres or parts of a quaternion, are the same.
+# Static transforms that differ by less are equal [m, or components of the quaternion].
 _ROUNDING = 1e-4
 
 
 class TransformLog:
-    """Answers where a frame lies in another, by the transforms that it was given.
+    """Looks up poses of frames in the transforms added so far.
 
-    ``static``: transforms that hold from the start.
+    Args:
+        static: Static transforms that hold from the start of the bag.
     """
 
     def __init__(self, static: Iterable[Any]) -> None:
@@ -33,14 +34,22 @@ class TransformLog:
         self.clear()
 
     def clear(self) -> None:
-        """Forgets all but the static ones."""
+        """Discard all transforms but the static ones."""
         self._buffer = tf2_py.BufferCore(Duration(30.0))
         self._newest: Dict[str, Time] = {}
         for transform in self._static.values():
             self._buffer.set_transform_static(transform, "bag")
 
     def add(self, message, is_static: bool) -> List[str]:
-        """Takes in a message; returns the static transforms in it that contradict what held so far."""
+        """Add the transforms of a message.
+
+        Args:
+            message: A tf2_msgs/TFMessage.
+            is_static: Whether it was recorded on /tf_static.
+
+        Returns:
+            "parent -> child" of each static transform that differs from the one known before.
+        """
         contradicted: List[str] = []
         for logged in message.transforms:
             transform = _typed(logged)
@@ -60,13 +69,25 @@ class TransformLog:
         return contradicted
 
     def latest_stamp(self, target: str, source: str) -> Optional[Time]:
+        """Return the newest time at which the transform is known; None if it is unknown."""
         try:
             return self._buffer.get_latest_common_time(target, source)
         except tf2_py.TransformException:
             return None
 
     def pose_near(self, target: str, source: str, stamp, tolerance: float) -> Optional[Pose2]:
-        """Where ``source`` lies in ``target`` at ``stamp``, or else at most ``tolerance`` s later."""
+        """Return a frame's pose at a stamp, or the latest one if that is close enough.
+
+        Args:
+            target: Frame in which the pose is given.
+            source: Frame whose pose is looked up.
+            stamp: Time of the pose.
+            tolerance: Longest time between ``stamp`` and the latest transform, used if there is none at
+                ``stamp`` [s].
+
+        Returns:
+            The pose of ``source`` in ``target``; None if it is unknown or out of range.
+        """
         latest = self.latest_stamp(target, source)
         if latest is None:
             return None
@@ -76,7 +97,7 @@ class TransformLog:
         return None if transform is None else self._pose_of(transform)
 
     def mounting(self, base: str, sensor: str) -> Optional[Tuple[Pose2, bool]]:
-        """The pose of a sensor on its base, and whether it hangs upside down."""
+        """Return a sensor's pose in the base frame and whether it is mounted upside down; None if unknown."""
         transform = self._lookup(base, sensor, Time(0))
         pose = None if transform is None else self._pose_of(transform)
         if transform is None or pose is None:
@@ -85,10 +106,11 @@ class TransformLog:
         return pose, 1.0 - 2.0 * (q.x * q.x + q.y * q.y) < 0.0
 
     def frames(self) -> List[str]:
+        """Return the names of all frames seen so far, sorted."""
         return sorted(self._frames)
 
     def _pose_of(self, transform) -> Optional[Pose2]:
-        """None for a place where nothing can be."""
+        """Return the pose in the plane; None if it is out of range."""
         try:
             return pose2_of(transform.translation, transform.rotation)
         except MessageError:
@@ -104,18 +126,18 @@ class TransformLog:
 
 
 def _is_same(one: TransformStamped, other: TransformStamped) -> bool:
-    """Whether two transforms have the same parent and, but for rounding, put the child to the same place."""
+    """Whether two transforms have the same parent and, up to rounding, the same pose."""
     a, b = (
         np.array([getattr(part, axis) for part in (t.translation, t.rotation) for axis in part.__slots__])
         for t in (one.transform, other.transform)
     )
-    turned = np.concatenate((b[:3], -b[3:]))  # the same rotation
-    near = min(np.abs(a - b).max(), np.abs(a - turned).max()) < _ROUNDING
-    return one.header.frame_id == other.header.frame_id and bool(near)
+    negated = np.concatenate((b[:3], -b[3:]))  # q and -q are the same rotation
+    is_close = min(np.abs(a - b).max(), np.abs(a - negated).max()) < _ROUNDING
+    return one.header.frame_id == other.header.frame_id and bool(is_close)
 
 
 def _typed(logged) -> TransformStamped:
-    """A transform of the types that tf2 wants; rosbag makes types of its own."""
+    """Convert a transform to the classes tf2 needs; rosbag generates separate ones."""
     v, q = logged.transform.translation, logged.transform.rotation
     return TransformStamped(
         Header(stamp=logged.header.stamp, frame_id=frame_name(logged.header.frame_id)),

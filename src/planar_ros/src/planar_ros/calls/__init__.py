@@ -1,1 +1,1 @@
-"""Actions and services of other nodes, called so that nothing hangs."""
+"""Action servers, and clients of actions and services with time-outs."""

@@ -1,4 +1,4 @@
-"""Clients and servers of actions."""
+"""Action server and client checks on top of actionlib."""
 
 from typing import Any, List, Sequence
 
@@ -8,18 +8,24 @@ import rospy
 from planar_ros.lockstep import LockstepClient
 from planar_ros.node.flush import flush_and_close
 
-# Goals that have ended are told of for a while, but of no more than so many, and no more than so many are
-# kept: each goal that comes is looked up among them.
+# Most ended goals in the status message, and most goals tracked before pruning: actionlib searches each new
+# goal among the tracked ones.
 MAX_ENDED_GOALS, MAX_TRACKED_GOALS = 20, 60
-# Of ROS time, in which a goal that is under way comes to be known.
+# ROS time within which a server that received a goal publishes its status.
 ACKNOWLEDGE_TIME = rospy.Duration(1)
 KILLED_TEXT = "Aborting on the goal because the node has been killed"
 
 
 class ActionServer(actionlib.SimpleActionServer):
-    """A server that tells its status at moments, and also after time was set back, unlike actionlib's own.
+    """actionlib's SimpleActionServer with bounded goal lists, for simulated and lock-step time.
 
-    A client that sends goals without end does not slow it down, and none is left waiting when the node ends.
+    It differs from actionlib's server in these points: status is published at logical instants; goals are
+    accepted after ROS time has jumped back; ended goals are pruned, so that a flood of goals does not slow it
+    down; and an active goal is aborted on shutdown.
+
+    Args:
+        arguments: As for SimpleActionServer.
+        named: As for SimpleActionServer.
     """
 
     def __init__(self, *arguments: Any, **named: Any):
@@ -27,21 +33,25 @@ class ActionServer(actionlib.SimpleActionServer):
         rospy.on_shutdown(self._abort_at_end)
 
     def start(self) -> None:
+        """Start the server and publish its status periodically."""
         server, step = self.action_server, LockstepClient.of_node()
-        self._publish_status, self._is_to_tell = server.publish_status, False
-        if (
-            step.is_synchronized
-        ):  # clients connect between this moment and the next, and either all hear it or none
+        self._publish_status, self._is_status_due = server.publish_status, False
+        # In lock-step no status is published while clients connect, since only some of them would receive it.
+        if step.is_synchronized:
             server.publish_status = lambda: None
         super().start()
-        server.publish_status = self._tell_soon
+        server.publish_status = self._schedule_status
         if server.status_timer is not None:
             server.status_timer.shutdown()
         period = 1.0 / server.status_frequency
-        step.every(lambda: period, lambda _now: self._tell(), self._forget_cancel)
+        step.every(lambda: period, lambda _now: self._publish_now(), self._clear_last_cancel)
 
     def internal_goal_callback(self, goal: Any) -> None:
-        """A goal is not old for being stamped before the last one: time may have been set back."""
+        """Accept a goal even if an earlier goal has a stamp in the future, because time has jumped back.
+
+        Args:
+            goal: actionlib's handle of the new goal.
+        """
         with self.lock:
             now = rospy.Time.now()
             for earlier in (self.current_goal, self.next_goal):
@@ -49,25 +59,25 @@ class ActionServer(actionlib.SimpleActionServer):
                     earlier.get_goal_id().stamp = rospy.Time()
         super().internal_goal_callback(goal)
 
-    def _forget_cancel(self) -> None:
-        """Nor is it cancelled by what was stamped later."""
+    def _clear_last_cancel(self) -> None:
+        """Keep cancel requests from before a jump back of time from cancelling goals after it."""
         with self.action_server.lock:
             self.action_server.last_cancel = rospy.Time()
 
-    def _tell_soon(self) -> None:
-        """How all goals stand: once for all that have changed at a moment, which may be thousands."""
+    def _schedule_status(self) -> None:
+        """Publish the status once for all goals that change at a logical instant, possibly thousands."""
         server = self.action_server
         with server.lock:
             if len(server.status_list) > MAX_TRACKED_GOALS:
                 server.status_list[:] = prune_ended(server.status_list)
-            if not self._is_to_tell:
-                self._is_to_tell = True
-                LockstepClient.of_node().defer(self._tell)
+            if not self._is_status_due:
+                self._is_status_due = True
+                LockstepClient.of_node().defer(self._publish_now)
 
-    def _tell(self) -> None:
+    def _publish_now(self) -> None:
         server = self.action_server
         with server.lock:
-            self._is_to_tell = False
+            self._is_status_due = False
             server.status_list[:] = prune_ended(server.status_list)
             self._publish_status()
 
@@ -78,37 +88,37 @@ class ActionServer(actionlib.SimpleActionServer):
             if not self.is_active():
                 return
             self.set_aborted(text=KILLED_TEXT)
-            self._tell()
+            self._publish_now()
         flush_and_close(self.action_server.result_pub, self.action_server.status_pub)
 
 
 def prune_ended(trackers: Sequence[Any]) -> List[Any]:
-    """Drop actionlib's StatusTrackers of ended goals but for the last MAX_ENDED_GOALS."""
+    """Return actionlib's StatusTrackers without those of ended goals except the last MAX_ENDED_GOALS."""
     ended = [tracker for tracker in trackers if tracker.handle_destruction_time != rospy.Time()]
-    forgotten = {id(tracker) for tracker in ended[:-MAX_ENDED_GOALS]}
-    return [tracker for tracker in trackers if id(tracker) not in forgotten]
+    dropped = {id(tracker) for tracker in ended[:-MAX_ENDED_GOALS]}
+    return [tracker for tracker in trackers if id(tracker) not in dropped]
 
 
 def server_is_ready(client: actionlib.SimpleActionClient) -> bool:
-    """Whether the action's server is there and hears and answers this client.
+    """Whether the action's server is connected to this client in both directions.
 
-    Unlike wait_for_server it answers at once, also while simulated time stands still.
+    Unlike wait_for_server it returns at once, even while simulated time is paused.
     """
     inner = client.action_client
     if inner.last_status_msg is None:
         return False
-    # Others may listen to goals, too, as a recorder of bags does.
+    # Other nodes may subscribe to goals too, such as rosbag record.
     server = inner.last_status_msg._connection_header["callerid"]
     publishers = (inner.pub_goal, inner.pub_cancel)
-    hears = all(publisher.impl.has_connection(server) for publisher in publishers)
-    # rospy counts a connection before it stands, and knows only then whose it is.
-    return hears and any(each.callerid_pub == server for each in inner.result_sub.impl.connections)
+    is_subscribed = all(publisher.impl.has_connection(server) for publisher in publishers)
+    # rospy counts a connection before its handshake, after which callerid_pub is known.
+    return is_subscribed and any(each.callerid_pub == server for each in inner.result_sub.impl.connections)
 
 
 def goal_is_over(client: actionlib.SimpleActionClient) -> bool:
-    """Whether the last goal has ended and its result has come, which may be later than its state.
+    """Whether the last goal has ended and its result has arrived, which may be later than its state.
 
-    Of a result that comes before ``send_goal`` has returned, only the handle of the goal takes note.
+    A result that arrives before ``send_goal`` returns is seen only by the goal handle.
     """
     if client.simple_state == actionlib.SimpleGoalState.DONE:
         return True
@@ -116,19 +126,26 @@ def goal_is_over(client: actionlib.SimpleActionClient) -> bool:
 
 
 def server_connection(client: actionlib.SimpleActionClient) -> Any:
-    """What stands for the server that was heard last, None before: another one after it was started anew."""
-    told = client.action_client.last_status_msg
-    return None if told is None else told._connection_header
+    """Return an object that identifies the server's present connection; it changes after a restart.
+
+    None before the first status message.
+    """
+    status = client.action_client.last_status_msg
+    return None if status is None else status._connection_header
 
 
 def goal_is_lost(client: actionlib.SimpleActionClient, sent_to: Any) -> bool:
-    """Whether the last goal went to a server that has been restarted since and does not know the goal.
+    """Whether the last goal was sent to a server that has restarted since and does not know the goal.
 
-    actionlib sees that only of goals that the server has acknowledged, and that have no result under way.
+    actionlib detects this only for acknowledged goals without a pending result.
+
+    Args:
+        client: The client that sent the goal.
+        sent_to: ``server_connection`` at the time of sending.
     """
-    told = client.action_client.last_status_msg
-    if goal_is_over(client) or client.gh is None or told is None or server_connection(client) is sent_to:
+    latest = client.action_client.last_status_msg
+    if goal_is_over(client) or client.gh is None or latest is None or server_connection(client) is sent_to:
         return False
     goal_id = client.gh.comm_state_machine.action_goal.goal_id
-    is_known = any(status.goal_id.id == goal_id.id for status in told.status_list)
-    return not is_known and told.header.stamp > goal_id.stamp + ACKNOWLEDGE_TIME
+    is_known = any(status.goal_id.id == goal_id.id for status in latest.status_list)
+    return not is_known and latest.header.stamp > goal_id.stamp + ACKNOWLEDGE_TIME

@@ -1,4 +1,4 @@
-"""The service type nav_msgs/LoadMap, which nav_msgs has from 1.14 on: Debian 11's has none."""
+"""Service type nav_msgs/LoadMap, which exists from nav_msgs 1.14 on (not in Debian 11)."""
 
 import enum
 from typing import Callable, Mapping
@@ -13,13 +13,13 @@ except ImportError:
 else:
 
     class LoadMapArrays(LoadMap):  # type: ignore[no-redef]
-        """nav_msgs/LoadMap whose map comes and goes as a numpy array."""
+        """nav_msgs/LoadMap whose map data is a numpy array."""
 
         _response_class = numpy_msg(LoadMapResponse)
 
 
 class LoadMapResult(enum.IntEnum):
-    """The codes of its answer."""
+    """Result codes of nav_msgs/LoadMap."""
 
     SUCCESS = 0
     MAP_DOES_NOT_EXIST = 1
@@ -29,9 +29,14 @@ class LoadMapResult(enum.IntEnum):
 
 
 def advertise_services(kind, handlers: Mapping[str, Callable]) -> None:
-    """Serves each name with ``kind``, one of the types above; where there is none, says so once."""
+    """Advertise LoadMap services, or log that this system has no such type.
+
+    Args:
+        kind: ``LoadMap`` or ``LoadMapArrays``, which are None without the service type.
+        handlers: Handler of each service name.
+    """
     if kind is None:
-        rospy.loginfo("nav_msgs of this system has no LoadMap, so there is no %s", ", ".join(handlers))
+        rospy.loginfo("nav_msgs of this system has no LoadMap; not advertising %s", ", ".join(handlers))
         return
     for name, handler in handlers.items():
         rospy.Service(name, kind, handler)

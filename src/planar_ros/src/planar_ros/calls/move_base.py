@@ -1,4 +1,4 @@
-"""The client of move_base: goals and plans as planar types."""
+"""Client of move_base with goals and plans as planar types."""
 
 import math
 import time
@@ -18,14 +18,19 @@ from planar_ros.calls.services import call_service
 from planar_ros.messages.conversion import pose2_from_msg, pose2_to_msg
 from planar_ros.node.flush import flush_and_close
 
+# Wall-clock time to wait for a plan [s].
 PLAN_SECONDS = 5.0
 POLL_SECONDS = 0.02
 
 
 class MoveBaseClient:
-    """Has move_base drive, one goal at a time. Goals and plans are in the frame ``frame_id``.
+    """Sends goals to move_base, one at a time.
 
-    ``robot``: the robot's pose in move_base's global frame by the latest feedback, None before the first.
+    Args:
+        frame_id: Frame of goals and plans.
+
+    Attributes:
+        robot: Robot pose in move_base's global frame from the latest feedback; None before the first.
     """
 
     def __init__(self, frame_id: str = "map"):
@@ -38,23 +43,28 @@ class MoveBaseClient:
 
     @property
     def name(self) -> str:
-        """What to call it to people: "the action /move_base"."""
+        """Name for messages to people: "the action /move_base"."""
         return f"the action {rospy.resolve_name('move_base')}"
 
     def is_ready(self) -> bool:
-        """Whether it is there, hears and answers."""
+        """Whether move_base is connected in both directions."""
         return server_is_ready(self._client)
 
     def send(self, goal: Pose2, stamp: Optional[rospy.Time] = None) -> None:
-        """Drives there instead of to any earlier goal. ``stamp``: of the goal, by default now."""
+        """Send a goal, which replaces any earlier one.
+
+        Args:
+            goal: Target pose in ``frame_id``.
+            stamp: Stamp of the goal; None for now.
+        """
         message = MoveBaseGoal(target_pose=self._stamped(goal))
         message.target_pose.header.stamp = rospy.Time.now() if stamp is None else stamp
         self._sent_to = server_connection(self._client)
-        self._client.send_goal(message, feedback_cb=self._keep_pose)
+        self._client.send_goal(message, feedback_cb=self._on_feedback)
         self._is_driving, self._lost_since = True, None
 
     def outcome(self) -> Optional[DriveOutcome]:
-        """What came of the last goal, told once; None while it is pursued."""
+        """Return the outcome of the last goal once; None while it is active and afterwards."""
         if not self._is_driving:
             return None
         is_lost = goal_is_lost(self._client, self._sent_to)
@@ -62,12 +72,12 @@ class MoveBaseClient:
             return None
         self._is_driving = False
         status = "LOST" if is_lost else GoalStatus.to_string(self._client.get_state())
-        if status == "LOST":  # the text is of when it was still known
-            return DriveOutcome(status, f"{self.name} has forgotten the goal: it was started anew")
+        if status == "LOST":  # the status text is older than the restart
+            return DriveOutcome(status, f"{self.name} has restarted and no longer knows the goal")
         return DriveOutcome(status, self._client.get_goal_status_text())
 
     def is_lost(self, patience: float) -> bool:
-        """Whether it has been gone for so many wall-clock seconds, if asked all along."""
+        """Whether move_base has been gone for ``patience`` wall-clock seconds; call this periodically."""
         now = time.monotonic()
         if self.is_ready():
             self._lost_since = None
@@ -76,43 +86,51 @@ class MoveBaseClient:
         return self._lost_since is not None and now - self._lost_since > patience
 
     def cancel(self) -> None:
-        """Gives the goal up if it is still pursued."""
+        """Cancel the goal if it is active."""
         if self._is_driving and not goal_is_over(self._client):
             self._client.cancel_goal()
         self._is_driving = False
 
     @property
     def is_idle(self) -> bool:
-        """Whether no goal is pursued."""
+        """Whether no goal is active."""
         return goal_is_over(self._client)
 
     def stop(self, patience: float) -> None:
-        """The same, and waits at most so many wall-clock seconds until it has been given up."""
+        """Cancel the goal and wait at most ``patience`` wall-clock seconds until it has ended."""
         self.cancel()
         deadline = time.monotonic() + patience
         while not goal_is_over(self._client) and time.monotonic() < deadline:
             time.sleep(POLL_SECONDS)
 
     def cancel_all(self) -> None:
-        """Gives all goals up, also those of others."""
+        """Cancel all goals, including those of other clients."""
         self._is_driving = False
         self._client.cancel_all_goals()
 
     def cancel_on_shutdown(self) -> None:
-        """Has the goal given up when the node ends, and move_base hear of it."""
+        """Cancel the goal on shutdown, and wait until move_base has received the request."""
 
         def cancel() -> None:
             inner = self._client.action_client
-            flush_and_close(inner.pub_goal)  # lest a goal comes after what cancels it
+            flush_and_close(inner.pub_goal)  # so that no goal arrives after its cancel request
             self.cancel()
             flush_and_close(inner.pub_cancel)
 
         rospy.on_shutdown(cancel)
 
     def plan_length(self, start: Optional[Pose2], end: Pose2) -> Optional[float]:
-        """Metres of its plan from ``start``, or from the robot, to ``end``; None if it finds no way.
+        """Return the length of move_base's plan between two poses.
 
-        Raises ServiceError if it does not answer.
+        Args:
+            start: Start pose in ``frame_id``; None for the robot's pose.
+            end: Target pose in ``frame_id``.
+
+        Returns:
+            Path length [m]; None if there is no plan.
+
+        Raises:
+            ServiceError: If move_base does not answer.
         """
         request = GetPlanRequest(goal=self._stamped(end))
         if start is not None:
@@ -128,5 +146,5 @@ class MoveBaseClient:
         message.header.frame_id = self._frame_id
         return message
 
-    def _keep_pose(self, feedback: MoveBaseFeedback) -> None:
+    def _on_feedback(self, feedback: MoveBaseFeedback) -> None:
         self.robot = pose2_from_msg(feedback.base_position.pose)

@@ -1,4 +1,4 @@
-"""Calls of services that cannot hang."""
+"""Service calls with a time-out."""
 
 import queue
 import threading
@@ -10,11 +10,24 @@ from planar_ros.lockstep import LockstepClient
 
 
 class ServiceError(PlanarError):
-    """A service is not there, does not answer in time, or refuses; the text names it and says which."""
+    """A service is unavailable, times out or fails; the text names the service and the reason."""
 
 
 def call_service(name: str, kind, request, seconds: float):
-    """The response of the service; waits at most ``seconds`` of wall-clock time. Raises ServiceError."""
+    """Call a service with a time-out.
+
+    Args:
+        name: Service name.
+        kind: Service type.
+        request: The request.
+        seconds: Longest wall-clock time to wait for the response [s].
+
+    Returns:
+        The response.
+
+    Raises:
+        ServiceError: If the service is unavailable, times out or fails.
+    """
     answers: queue.Queue = queue.Queue()
     step = LockstepClient.existing()
     headers = {} if step is None else step.headers()

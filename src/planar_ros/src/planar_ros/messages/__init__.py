@@ -1,1 +1,1 @@
-"""Messages and transforms made into planar types, and back."""
+"""Conversion of messages and transforms to planar types and back."""

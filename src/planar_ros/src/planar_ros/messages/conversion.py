@@ -17,40 +17,56 @@ from planar import OccupancyGrid, Pose2, Scan, Twist2
 from planar.geometry.limits import MAX_COORDINATE
 from planar_ros.messages.validation import MessageError, check_twist
 
-# Subscribed to with these types, `ranges` and `data` arrive as numpy arrays instead of tuples.
+# Message types for subscribers and publishers whose `ranges` and `data` are numpy arrays instead of tuples.
 LaserScanArrays = numpy_msg(LaserScan)
 OccupancyGridArrays = numpy_msg(OccupancyGridMsg)
 
 
 class GetMapArrays(GetMap):
-    """nav_msgs/GetMap whose map comes and goes as a numpy array."""
+    """nav_msgs/GetMap whose map data is a numpy array."""
 
     _response_class = numpy_msg(GetMapResponse)
 
 
 class SetMapArrays(SetMap):
-    """nav_msgs/SetMap whose map comes and goes as a numpy array."""
+    """nav_msgs/SetMap whose map data is a numpy array."""
 
     _request_class = numpy_msg(SetMapRequest)
 
 
 def yaw_of(quaternion) -> float:
-    """Yaw, radians, of a geometry_msgs/Quaternion of any length but zero."""
+    """Return the yaw of a geometry_msgs/Quaternion, which need not be normalized [rad]."""
     x, y, z, w = quaternion.x, quaternion.y, quaternion.z, quaternion.w
     return math.atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z)
 
 
 def quaternion_of(yaw: float) -> Quaternion:
+    """Return the quaternion of a yaw angle [rad]."""
     return Quaternion(0.0, 0.0, math.sin(yaw / 2.0), math.cos(yaw / 2.0))
 
 
 def pose2_from_msg(pose) -> Pose2:
-    """Raises MessageError for a pose at which nothing can be."""
+    """Convert a geometry_msgs/Pose.
+
+    Raises:
+        MessageError: If a coordinate is not finite or out of range.
+    """
     return pose2_of(pose.position, pose.orientation)
 
 
 def pose2_of(position, orientation) -> Pose2:
-    """The pose in the plane of a point and a quaternion. Raises MessageError, as above."""
+    """Return the planar pose of a position and an orientation.
+
+    Args:
+        position: geometry_msgs/Point or Vector3 [m].
+        orientation: geometry_msgs/Quaternion.
+
+    Returns:
+        The pose in the plane.
+
+    Raises:
+        MessageError: If a coordinate is not finite or out of range.
+    """
     found = Pose2(position.x, position.y, yaw_of(orientation))
     if not found.is_in_range():
         raise MessageError(f"a pose at {found.x:g}, {found.y:g}, {found.yaw:g} means nothing")
@@ -58,21 +74,37 @@ def pose2_of(position, orientation) -> Pose2:
 
 
 def twist2_from_msg(twist) -> Twist2:
-    """Forward and turning speed of a geometry_msgs/Twist. Raises MessageError for none of a robot's."""
+    """Convert a geometry_msgs/Twist to forward and turning speed.
+
+    Raises:
+        MessageError: If a velocity is not finite or out of range.
+    """
     check_twist(twist)
     return Twist2(twist.linear.x, twist.angular.z)
 
 
 def pose2_to_msg(pose: Pose2) -> Pose:
+    """Convert a pose to a geometry_msgs/Pose."""
     return Pose(Point(pose.x, pose.y, 0.0), quaternion_of(pose.yaw))
 
 
 def frame_name(frame_id: str) -> str:
-    """A frame's name as tf2 knows it: without the leading slash of older code."""
+    """Return a frame's name without a leading slash, as tf2 requires."""
     return frame_id[1:] if frame_id.startswith("/") else frame_id
 
 
 def transform_msg(child_in_parent: Pose2, parent: str, child: str, stamp) -> TransformStamped:
+    """Return the message of a transform.
+
+    Args:
+        child_in_parent: Pose of the child frame in the parent frame.
+        parent: Parent frame.
+        child: Child frame.
+        stamp: Time of the transform (rospy.Time).
+
+    Returns:
+        The transform.
+    """
     message = TransformStamped()
     message.header.stamp = stamp
     message.header.frame_id = parent
@@ -84,9 +116,12 @@ def transform_msg(child_in_parent: Pose2, parent: str, child: str, stamp) -> Tra
 
 
 def grid_from_msg(message) -> OccupancyGrid:
-    """A grid with cells of its own: a message's may be read-only, and kernels would be compiled anew.
+    """Convert a nav_msgs/OccupancyGrid.
 
-    Raises PlanarError for a message that holds no map.
+    The cells are copied: a message's array may be read-only, for which numba would compile all kernels again.
+
+    Raises:
+        PlanarError: If the data has the wrong length, or the resolution or the origin is out of range.
     """
     info = message.info
     if len(message.data) != info.width * info.height:
@@ -97,7 +132,16 @@ def grid_from_msg(message) -> OccupancyGrid:
 
 
 def grid_to_msg(grid: OccupancyGrid, stamp, frame_id: str) -> OccupancyGridMsg:
-    """A message whose data is a flat numpy array; publish it with OccupancyGridArrays for speed."""
+    """Convert a grid to a message whose data is a flat numpy array.
+
+    Args:
+        grid: The grid.
+        stamp: Stamp of the message (rospy.Time).
+        frame_id: Frame of the map.
+
+    Returns:
+        The message; publish it as ``OccupancyGridArrays``, which is faster.
+    """
     message = OccupancyGridArrays()
     message.header.stamp = stamp
     message.header.frame_id = frame_id
@@ -109,7 +153,19 @@ def grid_to_msg(grid: OccupancyGrid, stamp, frame_id: str) -> OccupancyGridMsg:
 
 
 def scan_from_msg(message, laser_in_base: Pose2, upside_down: bool = False) -> Scan:
-    """Raises PlanarError for a message that holds no scan."""
+    """Convert a sensor_msgs/LaserScan.
+
+    Args:
+        message: The message; ``range_max`` is limited to MAX_COORDINATE.
+        laser_in_base: Mounting pose of the laser in the base frame.
+        upside_down: Whether the laser is mounted upside down.
+
+    Returns:
+        The scan.
+
+    Raises:
+        PlanarError: If a field other than the ranges is not finite or out of range.
+    """
     return Scan(
         stamp=message.header.stamp.to_sec(),
         angle_min=message.angle_min,
@@ -123,12 +179,18 @@ def scan_from_msg(message, laser_in_base: Pose2, upside_down: bool = False) -> S
 
 
 def time_of(stamp: float) -> rospy.Time:
-    """Seconds as rospy.Time, to the nearest nanosecond."""
+    """Convert a time [s] to rospy.Time, rounded to the nearest nanosecond."""
     return rospy.Time(0, round(stamp * 1e9))
 
 
 class PosesMsg(PoseArray):
-    """A geometry_msgs/PoseArray of poses (N, 3) x, y, yaw; serialized in one go, if anybody listens."""
+    """geometry_msgs/PoseArray that is serialized from an array, and only if there is a subscriber.
+
+    Args:
+        poses: Poses (N, 3) ``[x, y, yaw]`` [m, m, rad].
+        stamp: Stamp of the message.
+        frame_id: Frame of the poses.
+    """
 
     def __init__(self, poses: np.ndarray, stamp: rospy.Time, frame_id: str):
         super().__init__()
@@ -136,6 +198,7 @@ class PosesMsg(PoseArray):
         self._poses_xyt = poses
 
     def serialize(self, buff):
+        """Write the message to a buffer in ROS wire format."""
         rows = np.zeros((len(self._poses_xyt), 7), dtype="<f8")
         rows[:, :2] = self._poses_xyt[:, :2]
         rows[:, 5], rows[:, 6] = np.sin(self._poses_xyt[:, 2] / 2.0), np.cos(self._poses_xyt[:, 2] / 2.0)
@@ -150,7 +213,17 @@ FLOAT_BYTES = 4
 def cloud_msg(
     columns: Sequence[np.ndarray], names: Sequence[str], stamp: rospy.Time, frame: str
 ) -> PointCloud2:
-    """A cloud of points from the column (N,) of each of its fields, all float32."""
+    """Return a point cloud whose fields are all float32.
+
+    Args:
+        columns: Values (N,) of each field.
+        names: Names of the fields.
+        stamp: Stamp of the message.
+        frame: Frame of the points.
+
+    Returns:
+        The point cloud.
+    """
     points = np.column_stack(columns).astype("<f4")
     count, point_step = len(points), FLOAT_BYTES * len(names)
     return PointCloud2(

@@ -1,4 +1,4 @@
-"""Scans that wait for their transforms."""
+"""Queue of scans that wait for their transforms."""
 
 import threading
 import traceback
@@ -14,12 +14,24 @@ from planar_ros.messages.transforms import JUMP_BACK_SECONDS, Transforms
 
 
 class ScanQueue:
-    """Hands on each scan once it is known where the robot was, in odometry, at the scan's stamp.
+    """Passes on each scan as soon as odometry at its stamp is known.
 
-    A transform may come a little before or after its scan; the waiting holds up nothing else, it happens in a
-    thread of its own, in step at moments. ``handle(message, scan, base_in_odom)`` is called there, scans of
-    one laser in order; ``skip(message, reason)`` for each scan whose odometry will never be known, or that
-    ``size`` others have overtaken. Reasons are for people.
+    Transforms may arrive shortly before or after their scan. Scans are processed in a separate thread, or at
+    logical instants in lock-step, so that waiting blocks nothing else.
+
+    Args:
+        transforms: Source of odometry and of the lasers' mounting poses.
+        odom_frame: Frame of odometry.
+        base_frame: Frame of the robot's base.
+        handle: Called with message, scan and odometry (pose of the base in ``odom_frame``), in order for
+            each laser.
+        skip: Called with the message and a reason for people, for a scan whose odometry can no longer become
+            known or that ``size`` newer scans have overtaken.
+        topic: Topic of the scans (sensor_msgs/LaserScan).
+        size: Most scans that may wait.
+
+    Attributes:
+        topic: Resolved topic name.
     """
 
     def __init__(
@@ -41,38 +53,38 @@ class ScanQueue:
         self._is_ending = False
         self._mountings: Dict[str, Tuple[Pose2, bool]] = {}
         self._newest_stamp = rospy.Time(0)
-        self._has_news = threading.Condition()
-        self._news = 0
+        self._condition = threading.Condition()
+        self._wake_count = 0
         self._step = LockstepClient.of_node()
-        self._step.on_instant(self._deal_with_waiting)
+        self._step.on_instant(self._process_waiting)
         rospy.on_shutdown(self._wake)
         threading.Thread(target=self._work, daemon=True).start()
-        # Subscribed to after the listener, whose callback has then already taken in the same message.
+        # Subscribed after the tf listener, whose callback has then already added the same message.
         rospy.Subscriber("/tf", TFMessage, self._on_transforms, tcp_nodelay=True)
         rospy.Subscriber("/tf_static", TFMessage, self._on_transforms)
-        self._heard = rospy.Subscriber(topic, LaserScanArrays, self.add, queue_size=size, tcp_nodelay=True)
+        self._scans = rospy.Subscriber(topic, LaserScanArrays, self.add, queue_size=size, tcp_nodelay=True)
 
     @property
     def has_received(self) -> bool:
-        """Whether any scan has come yet."""
+        """Whether any scan has been received."""
         return self._received > 0
 
     @property
     def waiting(self) -> int:
-        """How many scans have not been dealt with yet."""
+        """Number of scans that wait for transforms."""
         return len(self._waiting)
 
     def set_frames(self, odom_frame: str, base_frame: str) -> None:
-        """From now on asks for transforms between these frames."""
-        with self._has_news:
+        """Change the frames of odometry and of the base."""
+        with self._condition:
             self._odom_frame, self._base_frame = odom_frame, base_frame
             self._mountings.clear()
 
     def add(self, message) -> None:
-        """Takes in a scan, as one that comes by topic."""
-        with self._has_news:
+        """Add a scan; waiting scans and transforms are cleared if its stamp has jumped back."""
+        with self._condition:
             if message.header.stamp.to_sec() < self._newest_stamp.to_sec() - JUMP_BACK_SECONDS:
-                rospy.logwarn("time has jumped back: forgetting waiting scans and transforms")
+                rospy.logwarn("time has jumped back: clearing waiting scans and transforms")
                 self._waiting.clear()
                 self._transforms.clear()
                 self._newest_stamp = message.header.stamp
@@ -82,11 +94,11 @@ class ScanQueue:
         self._wake()
 
     def unsubscribe(self) -> None:
-        """Only what is given to ``take`` counts; it may be published on the topic and does not come again."""
-        self._heard.unregister()
+        """Stop receiving scans from the topic, so that only those given to ``add`` are processed."""
+        self._scans.unregister()
 
     def finish(self) -> None:
-        """Nothing more will come: what cannot be handed on now is skipped."""
+        """Process the waiting scans without waiting for more transforms; skip those without odometry."""
         self._is_ending = True
         self._wake()
 
@@ -96,38 +108,38 @@ class ScanQueue:
 
     def _wake(self):
         if self._step.is_synchronized and not self._is_ending:
-            return  # the moment has it looked after
-        with self._has_news:
-            self._news += 1
-            self._has_news.notify_all()
+            return  # the next logical instant processes them
+        with self._condition:
+            self._wake_count += 1
+            self._condition.notify_all()
 
     def _work(self):
         seen = 0
         while not rospy.is_shutdown():
-            with self._has_news:
-                self._has_news.wait_for(lambda: self._news != seen or rospy.is_shutdown())  # noqa: B023
-                seen = self._news
+            with self._condition:
+                self._condition.wait_for(lambda: self._wake_count != seen or rospy.is_shutdown())  # noqa: B023
+                seen = self._wake_count
             if not self._step.is_synchronized:
-                self._deal_with_waiting()
+                self._process_waiting()
 
-    def _deal_with_waiting(self):
-        with self._has_news:
+    def _process_waiting(self):
+        with self._condition:
             waiting = list(self._waiting.items())
         for number, message in waiting:
             is_late = self._is_ending or self._received - number >= self.size
-            if self._is_done_with(message, is_late):
-                with self._has_news:
+            if self._try_process(message, is_late):
+                with self._condition:
                     self._waiting.pop(number, None)
 
-    def _is_done_with(self, message, is_late):
+    def _try_process(self, message, is_late):
         try:
-            return self._deal_with(message, is_late)
-        except Exception:  # as rospy does with its callbacks: a fault must not silence the node for good
+            return self._process(message, is_late)
+        except Exception:  # as in rospy: an exception in a callback must not end the thread
             rospy.logerr("bad callback: %s", traceback.format_exc())
             return True
 
-    def _deal_with(self, message, is_late):
-        """Hands on or skips a scan; False if it must wait on."""
+    def _process(self, message, is_late):
+        """Handle or skip a scan; return False if it has to wait."""
         stamp, frame = message.header.stamp, frame_name(message.header.frame_id)
         base_in_odom = self._transforms.lookup(self._odom_frame, self._base_frame, stamp)
         mounting = self._mountings.get(frame) or self._transforms.mounting(self._base_frame, frame)
@@ -143,7 +155,7 @@ class ScanQueue:
             self._skip(message, f"{self._odom_frame} -> {self._base_frame} is not known for its stamp")
             return True
         if is_late:
-            known = self._odom_frame if base_in_odom is None else frame
-            self._skip(message, f"no transform between {known} and {self._base_frame} came in time")
+            missing = self._odom_frame if base_in_odom is None else frame
+            self._skip(message, f"no transform between {missing} and {self._base_frame} came in time")
             return True
         return False

@@ -1,4 +1,4 @@
-"""Transforms between frames, as plane poses."""
+"""Transforms between frames as poses in the plane."""
 
 import math
 import threading
@@ -13,16 +13,19 @@ from planar import Pose2
 from planar_ros.messages.conversion import frame_name, pose2_of, transform_msg
 from planar_ros.messages.validation import WARN_SECONDS, MessageError, is_stamp
 
-# A stamp this much older than the one before it means that time has jumped back: a bag's loop, a reset.
+# Time has jumped back (a looped bag, a reset) if a stamp is older than the one before by this much [s].
 JUMP_BACK_SECONDS = 1.0
 
 
 class TransformFilter:
-    """Hands on to a buffer of tf2 only what leaves it alive, and empties it when time has jumped back.
+    """Adds valid transforms to a tf2 buffer and clears it when time has jumped back.
 
-    tf2 looks at the clock alone, which comes by a connection of its own: what was said of the time before a
-    jump may come after the clock has jumped, and then all that is older by more than the buffer's length is
-    refused, perhaps for long. So each publisher's own stamps are looked at too.
+    tf2 checks only the clock, which arrives over a separate connection. A transform from before the jump may
+    arrive after the clock has jumped; tf2 would then reject new transforms older than that one by more than
+    the buffer's length. Therefore the stamps of each publisher are checked too.
+
+    Args:
+        buffer: The tf2 buffer.
     """
 
     def __init__(self, buffer: tf2_ros.BufferCore):
@@ -31,7 +34,13 @@ class TransformFilter:
         self._lock = threading.Lock()
 
     def add(self, transforms: Iterable[TransformStamped], publisher: str, is_static: bool = False) -> None:
-        """Takes in what one publisher said; stamps that no clock shows are left out."""
+        """Add transforms; those with invalid stamps are ignored.
+
+        Args:
+            transforms: The transforms of a message.
+            publisher: Name of the node that published them.
+            is_static: Whether they are static.
+        """
         usable = [transform for transform in transforms if is_stamp(transform.header.stamp)]
         if is_static:
             for transform in usable:
@@ -39,19 +48,19 @@ class TransformFilter:
             return
         with self._lock:
             for transform in usable:
-                self._notice_jump(publisher, transform)
+                self._clear_after_jump(publisher, transform)
                 self._buffer.set_transform(transform, publisher)
 
     def clear(self) -> None:
-        """Forgets all but what never moves."""
+        """Discard all transforms but the static ones."""
         with self._lock:
             self._clear()
 
-    def _notice_jump(self, publisher, transform):
-        said_by, stamp = (publisher, transform.child_frame_id), transform.header.stamp.to_sec()
-        if stamp < self._newest.get(said_by, stamp) - JUMP_BACK_SECONDS:
+    def _clear_after_jump(self, publisher, transform):
+        source, stamp = (publisher, transform.child_frame_id), transform.header.stamp.to_sec()
+        if stamp < self._newest.get(source, stamp) - JUMP_BACK_SECONDS:
             self._clear()
-        self._newest[said_by] = max(stamp, self._newest.get(said_by, stamp))
+        self._newest[source] = max(stamp, self._newest.get(source, stamp))
 
     def _clear(self):
         self._newest.clear()
@@ -59,7 +68,7 @@ class TransformFilter:
 
 
 class _Listener(tf2_ros.TransformListener):
-    """tf2's listener, which clears the buffer when the clock jumps, with an intake of ours."""
+    """tf2's listener, which clears the buffer when the clock jumps, with a TransformFilter."""
 
     def __init__(self, buffer, transform_filter, **connection):
         self._filter = transform_filter
@@ -77,7 +86,14 @@ class _Listener(tf2_ros.TransformListener):
 
 
 class Transforms:
-    """A listener to and sender of tf, in the plane."""
+    """Listener and broadcaster of tf for poses in the plane.
+
+    Args:
+        cache_seconds: Length of the tf2 buffer [s].
+
+    Attributes:
+        buffer: The tf2 buffer.
+    """
 
     def __init__(self, cache_seconds: float = 10.0):
         self.buffer = tf2_ros.Buffer(rospy.Duration(cache_seconds), debug=False)
@@ -86,9 +102,15 @@ class Transforms:
         self._broadcaster = tf2_ros.TransformBroadcaster()
 
     def lookup(self, target: str, source: str, stamp: Optional[rospy.Time] = None) -> Optional[Pose2]:
-        """Where ``source`` lies in ``target`` at ``stamp`` (default: the latest known); None if not known.
+        """Look up a frame's pose in the plane.
 
-        A transform to where nothing can be is not known either.
+        Args:
+            target: Frame in which the pose is given.
+            source: Frame whose pose is looked up.
+            stamp: Time of the pose; None for the latest.
+
+        Returns:
+            The pose of ``source`` in ``target``; None if it is unknown or out of range.
         """
         transform = self._lookup(target, source, stamp)
         if transform is None:
@@ -100,7 +122,7 @@ class Transforms:
             return None
 
     def mounting(self, base_frame: str, sensor_frame: str) -> Optional[Tuple[Pose2, bool]]:
-        """How a sensor is mounted on its base: its pose in the plane, and whether it hangs upside down."""
+        """Return a sensor's pose in the base frame and whether it is mounted upside down; None if unknown."""
         pose, transform = (
             self.lookup(base_frame, sensor_frame),
             self._lookup(base_frame, sensor_frame, None),
@@ -111,7 +133,7 @@ class Transforms:
         return pose, 1.0 - 2.0 * (q.x * q.x + q.y * q.y) < 0.0
 
     def matrix(self, target: str, source: str) -> Optional[np.ndarray]:
-        """Where ``source`` lies in ``target`` in space, (4, 4), by the latest transform; None: not known."""
+        """Return the latest pose of ``source`` in ``target`` in space, a matrix (4, 4); None if unknown."""
         transform = self._lookup(target, source, None)
         if transform is None:
             return None
@@ -122,21 +144,22 @@ class Transforms:
         return matrix
 
     def latest_stamp(self, target: str, source: str) -> Optional[rospy.Time]:
-        """The newest time at which the transform is known; None if it is not."""
+        """Return the newest time at which the transform is known; None if it is unknown."""
         try:
             return self.buffer.get_latest_common_time(frame_name(target), frame_name(source))
         except tf2_ros.TransformException:
             return None
 
     def send(self, child_in_parent: Pose2, parent: str, child: str, stamp: rospy.Time) -> None:
+        """Publish the pose of a child frame in its parent frame on /tf."""
         self._broadcaster.sendTransform(transform_msg(child_in_parent, parent, child, stamp))
 
     def add(self, message, is_static: bool = False) -> None:
-        """Takes in a tf2_msgs/TFMessage that did not come by topic, as from a bag."""
+        """Add a tf2_msgs/TFMessage that was not received by topic, such as one of a bag."""
         self._filter.add(message.transforms, "", is_static)
 
     def clear(self) -> None:
-        """Forgets everything, as after time has jumped back."""
+        """Discard all transforms but the static ones, as after time has jumped back."""
         self._filter.clear()
 
     def _lookup(self, target, source, stamp):
@@ -151,7 +174,7 @@ class Transforms:
 
 
 def _rotation(x: float, y: float, z: float, w: float) -> np.ndarray:
-    """The matrix (3, 3) of a quaternion of any length but 0, which turns nothing."""
+    """Return the rotation matrix (3, 3) of a quaternion of any length; the identity for length 0."""
     length = math.sqrt(x * x + y * y + z * z + w * w)
     if length == 0.0:
         return np.eye(3)
