@@ -1,14 +1,18 @@
-"""For the site: a link to a file outside of docs/ becomes its name, as the site does not contain it."""
+"""For the site: weights of search results, and names instead of links to files outside of docs/."""
 
 import posixpath
 import re
 from typing import Any
+
+# Weight of search results by folder: tasks come before the API.
+BOOST = {"get_started": 3.0, "how_to": 1.5, "reference/api": 0.5}
 
 LINK = re.compile(r"(?<!!)\[([^\]]*)\]\((\.\./[^)\s]*)\)")
 
 
 def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
     folder = posixpath.dirname(page.file.src_uri)
+    page.meta.setdefault("search", {"boost": BOOST.get(folder, 1.0)})
 
     def as_name(link: "re.Match[str]") -> str:
         path = posixpath.normpath(posixpath.join(folder, link[2].partition("#")[0]))
