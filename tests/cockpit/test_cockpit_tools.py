@@ -55,7 +55,7 @@ class CockpitToolsTest(unittest.TestCase):
         self.opened = title
 
     def test_the_graph_is_drawn(self):
-        self.open("GraphClient")
+        self.open("Graph")
         self.page.choose("Show", "nodes and all topics")
         self.page.wait_for("/stage", "/sine")
         self.assertNotIn("/rosout", self.drawn())
@@ -136,9 +136,9 @@ class CockpitToolsTest(unittest.TestCase):
         self.page.click("Publish once")
         wait_until("the message", lambda: received == ["hello"])
         self.page.fill_in("Hz", "10")
-        self.page.tick("Again and again")
+        self.page.tick("Repeat")
         wait_until("ten more", lambda: len(received) > 10)
-        self.page.tick("Again and again")
+        self.page.tick("Repeat")
         self.page.fill_in("Message", "data: [1]")
         self.page.click("Publish once")
         self.page.wait_for("not a std_msgs/String")
