@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""amcl_lite has the topics, services, frames, stamps and habits of amcl 1.17."""
+"""amcl_lite has the topics, services, frames, stamps and behaviour of amcl 1.17."""
 
 import math
 import unittest
@@ -11,10 +11,10 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from dynamic_reconfigure.client import Client
 from geometry_msgs.msg import PoseArray, PoseWithCovarianceStamped
 from rosgraph_msgs.msg import Log
+from simple_robot import BEAMS, SimpleRobot
 from std_msgs.msg import Float32, String
 from std_srvs.srv import Empty
 from tf2_msgs.msg import TFMessage
-from toy_robot import BEAMS, ToyRobot
 from waiting import PATIENCE_SECONDS, wait_until
 
 from planar import Pose2, wrap
@@ -23,26 +23,26 @@ from planar_ros.messages.conversion import SetMapArrays, frame_name, pose2_from_
 START = Pose2(1.2, 1.5, 0.0)
 STEP = Pose2(0.2, 0.0, 0.0)
 TURN = Pose2(0.0, 0.0, 0.4)
-# Of the position and the heading of a tracked pose, metres and radians.
+# Tolerances of a tracked pose [m, rad].
 NEAR, NEAR_ANGLE = 0.15, 0.1
-# As the node's transform_tolerance.
+# The node's transform_tolerance.
 POST_DATED = rospy.Duration(0.3)
 
 
-class Latest:
-    """The messages of a topic."""
+class Received:
+    """The messages received on a topic."""
 
     def __init__(self, topic, kind):
         self.messages = []
         self._subscriber = rospy.Subscriber(topic, kind, self.messages.append)
 
-    def wait(self, is_it):
-        """The first message for which ``is_it`` holds; fails if none comes."""
+    def wait(self, matches):
+        """Return the first message that ``matches``; fail after a time-out."""
 
         def found():
-            return next((message for message in list(self.messages) if is_it(message)), None)
+            return next((message for message in list(self.messages) if matches(message)), None)
 
-        wait_until("such a message", lambda: found() is not None)
+        wait_until("a matching message", lambda: found() is not None)
         return found()
 
 
@@ -50,15 +50,15 @@ class AmclContractTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         rospy.init_node("test_amcl_contract")
-        cls.robot = ToyRobot(START)
-        cls.poses = Latest("amcl_pose", PoseWithCovarianceStamped)
-        cls.transforms = Latest("/tf", TFMessage)
+        cls.robot = SimpleRobot(START)
+        cls.poses = Received("amcl_pose", PoseWithCovarianceStamped)
+        cls.transforms = Received("/tf", TFMessage)
         cls.initial_pose = rospy.Publisher("initialpose", PoseWithCovarianceStamped, queue_size=2)
-        cls.words = Latest("/rosout", Log)
+        cls.logs = Received("/rosout", Log)
         for service in ("global_localization", "request_nomotion_update", "set_map"):
             rospy.wait_for_service(service, 20.0)
         rospy.wait_for_service("amcl/get_loggers", 20.0)
-        wait_until("amcl_lite to listen", cls.initial_pose.get_num_connections)
+        wait_until("amcl_lite to subscribe", cls.initial_pose.get_num_connections)
 
         def is_localized():
             cls.robot.sense()
@@ -66,22 +66,22 @@ class AmclContractTest(unittest.TestCase):
             return cls.poses.messages
 
         wait_until("amcl_lite to start", is_localized)
-        cls.words.wait(lambda said: said.name == "/amcl")
+        cls.logs.wait(lambda log: log.name == "/amcl")
 
     def setUp(self):
         self.set_pose(self.robot.base_in_map)
 
     def set_pose(self, pose, **how):
-        """Tells a pose and waits until the node has taken or refused it.
+        """Publish an initial pose and wait until the node has accepted or rejected it.
 
-        The scans before it are worked in by then: the update that is due after it is that of the next one.
+        Earlier scans are processed by then, so that the next update belongs to the next scan.
         """
         self.map_to_odom(self.robot.sense() + POST_DATED)
-        self.words.messages.clear()
-        self.tell_pose(pose, **how)
-        self.words.wait(lambda said: said.msg.startswith(("Setting pose", "Ignoring initial pose")))
+        self.logs.messages.clear()
+        self.publish_initial_pose(pose, **how)
+        self.logs.wait(lambda log: log.msg.startswith(("Setting pose", "Ignoring initial pose")))
 
-    def tell_pose(self, pose, frame="map", stamp=None, spread=0.1):
+    def publish_initial_pose(self, pose, frame="map", stamp=None, spread=0.1):
         message = PoseWithCovarianceStamped()
         message.header.frame_id = frame
         message.header.stamp = stamp or rospy.Time(0)
@@ -91,16 +91,16 @@ class AmclContractTest(unittest.TestCase):
         self.initial_pose.publish(message)
 
     def estimate(self):
-        """The pose that belongs to a new scan at which an update is due."""
+        """Publish a scan that triggers an update and return the estimated pose."""
         stamp = self.robot.sense()
         return self.poses.wait(lambda pose: pose.header.stamp == stamp)
 
     def map_to_odom(self, stamp):
-        def is_it(message):
+        def matches(message):
             transform = message.transforms[0]
             return transform.child_frame_id == "odom" and transform.header.stamp == stamp
 
-        return self.transforms.wait(is_it).transforms[0]
+        return self.transforms.wait(matches).transforms[0]
 
     def assert_near(self, message, pose):
         found = pose2_from_msg(message.pose.pose)
@@ -154,7 +154,7 @@ class AmclContractTest(unittest.TestCase):
         self.robot.move(TURN)
         self.assert_near(self.estimate(), self.robot.base_in_map)
 
-    def test_an_initial_pose_of_the_past_is_moved_on_by_odometry(self):
+    def test_an_initial_pose_of_the_past_is_advanced_by_odometry(self):
         then, pose_then = self.robot.sense(), self.robot.base_in_map
         self.map_to_odom(then + POST_DATED)
         self.robot.move(Pose2(0.0, 0.0, math.pi / 2))
@@ -162,11 +162,11 @@ class AmclContractTest(unittest.TestCase):
         self.set_pose(pose_then, stamp=then, spread=0.01)
         self.assert_near(self.estimate(), self.robot.base_in_map)
 
-    def test_a_transform_that_comes_after_its_scan_is_waited_for(self):
+    def test_a_scan_waits_for_a_transform_that_arrives_later(self):
         stamp = self.robot.sense(tf_late=0.3)
         self.poses.wait(lambda pose: pose.header.stamp == stamp)
 
-    def test_scans_without_a_valid_beam_do_no_harm(self):
+    def test_scans_without_a_valid_beam_keep_the_estimate_finite(self):
         self.estimate()
         for value in (math.nan, math.inf, 0.0, -1.0):
             self.robot.move(TURN)
@@ -177,7 +177,7 @@ class AmclContractTest(unittest.TestCase):
         self.assert_near(self.estimate(), self.robot.base_in_map)
 
     def test_global_localization_spreads_the_particles_over_the_free_space(self):
-        clouds = Latest("particlecloud", PoseArray)
+        clouds = Received("particlecloud", PoseArray)
         rospy.ServiceProxy("global_localization", Empty)()
         self.robot.sense()
         cloud = clouds.wait(lambda cloud: np.ptp([pose.position.x for pose in cloud.poses]) > 6.0)
@@ -205,7 +205,7 @@ class AmclContractTest(unittest.TestCase):
         wait_until("the pose to be saved", is_saved)
         self.assertGreater(rospy.get_param("/amcl/initial_cov_xx"), 0.0)
 
-    def test_parameters_change_while_the_node_runs_and_come_back(self):
+    def test_parameters_can_be_changed_and_restored_at_run_time(self):
         client = Client("amcl", timeout=PATIENCE_SECONDS)
         started_with = client.get_configuration(timeout=PATIENCE_SECONDS)
         self.assertEqual((started_with["max_particles"], started_with["transform_tolerance"]), (2000, 0.3))
@@ -213,7 +213,7 @@ class AmclContractTest(unittest.TestCase):
         self.estimate()
         changed = client.update_configuration({"max_particles": 700, "min_particles": 700})
         self.assertEqual(changed["max_particles"], 700)
-        clouds = Latest("particlecloud", PoseArray)
+        clouds = Received("particlecloud", PoseArray)
         self.robot.move(TURN)
         self.assert_near(self.estimate(), self.robot.base_in_map)
         clouds.wait(lambda cloud: len(cloud.poses) == 700)
@@ -222,15 +222,15 @@ class AmclContractTest(unittest.TestCase):
         restored = client.update_configuration({"restore_defaults": True})
         self.assertEqual((restored["max_particles"], restored["min_particles"]), (2000, 500))
 
-    def test_diagnostics_tell_the_spread_and_the_quality(self):
-        diagnostics = Latest("/diagnostics", DiagnosticArray)
-        quality = Latest("amcl/localization_quality", Float32)
+    def test_diagnostics_report_the_spread_and_the_quality(self):
+        diagnostics = Received("/diagnostics", DiagnosticArray)
+        quality = Received("amcl/localization_quality", Float32)
 
         def confirms_pose():
             self.robot.move(TURN)
             self.map_to_odom(self.robot.sense() + POST_DATED)
-            told = diagnostics.messages and quality.messages
-            is_ok = told and diagnostics.messages[-1].status[0].level == DiagnosticStatus.OK
+            has_both = diagnostics.messages and quality.messages
+            is_ok = has_both and diagnostics.messages[-1].status[0].level == DiagnosticStatus.OK
             return is_ok and quality.messages[-1].data > 0.9
 
         wait_until("diagnostics and quality", confirms_pose)
@@ -248,12 +248,12 @@ class AmclContractTest(unittest.TestCase):
         transform = self.map_to_odom(self.robot.sense() + POST_DATED)
         self.assertEqual(transform.child_frame_id, frame_name(transform.child_frame_id))
 
-    def test_messages_that_mean_nothing_leave_the_node_as_it_was(self):
-        """Each of these once ended it with a segmentation fault, or in an endless loop."""
+    def test_invalid_messages_do_not_change_the_estimate(self):
+        """Each of these once caused a segmentation fault or an endless loop."""
         for name in ("angle_min", "angle_increment", "range_max"):
             self.robot.sense(changed={name: math.nan})
         for far, spread in ((1e300, 0.1), (1e18, 0.1), (0.0, 1e150)):
-            self.tell_pose(Pose2(far, 0.0), spread=spread)
+            self.publish_initial_pose(Pose2(far, 0.0), spread=spread)
             self.robot.sense()
         self.poses.messages.clear()
         self.set_pose(self.robot.base_in_map)

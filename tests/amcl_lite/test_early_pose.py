@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A pose told for a moment that has not come yet, as a person's click may be: amcl in step is not held up."""
+"""An initial pose with a stamp in the future, as from a click in rviz, does not block synchronized amcl."""
 
 import unittest
 
@@ -22,17 +22,17 @@ class TestEarlyPose(unittest.TestCase):
         wait_until("the simulation", lambda: self.truth, PATIENCE_SECONDS)
         wait_until("amcl", self.initial_pose.get_num_connections, PATIENCE_SECONDS)
 
-    def test_a_pose_of_a_moment_to_come_is_taken_when_it_has_come(self):
-        self.tell_pose(0.3)
-        self.assert_taken()
+    def test_a_pose_of_the_near_future_is_used_at_its_stamp(self):
+        self.publish_initial_pose(0.3)
+        self.assert_used()
         self.assertNotIn("no odometry at its stamp", " ".join(self.words))
 
-    def test_a_pose_of_a_time_that_does_not_come_soon_is_taken_as_of_now(self):
-        self.tell_pose(1000.0)
-        self.assert_taken()
+    def test_a_pose_of_the_far_future_is_used_as_of_now(self):
+        self.publish_initial_pose(1000.0)
+        self.assert_used()
         wait_until("a warning", lambda: any("no odometry at its stamp" in text for text in self.words), 20.0)
 
-    def tell_pose(self, seconds_ahead):
+    def publish_initial_pose(self, seconds_ahead):
         truth, message = self.truth[-1], PoseWithCovarianceStamped()
         message.header.frame_id = "map"
         message.header.stamp = truth.header.stamp + rospy.Duration(seconds_ahead)
@@ -41,8 +41,8 @@ class TestEarlyPose(unittest.TestCase):
         self.words.clear()
         self.initial_pose.publish(message)
 
-    def assert_taken(self):
-        wait_until("the pose to be taken", lambda: any("Setting pose" in text for text in self.words), 30.0)
+    def assert_used(self):
+        wait_until("the pose to be used", lambda: any("Setting pose" in text for text in self.words), 30.0)
         count = len(self.truth)
         wait_until("a second to pass", lambda: len(self.truth) > count + 50, 30.0)
         self.assertFalse([text for text in self.words if "no progress of" in text])

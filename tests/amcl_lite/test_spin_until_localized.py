@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A robot that amcl believes to be elsewhere turns until it is localized; in a wrong map it is told so."""
+"""A robot with a wrong estimate turns until it is localized; with a wrong map this fails with an error."""
 
 import subprocess
 import unittest
@@ -9,7 +9,7 @@ import rospy
 import rostest
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import Odometry
-from toy_robot import room
+from simple_robot import room
 from waiting import PATIENCE_SECONDS
 
 from planar import wrap
@@ -29,7 +29,7 @@ class SpinUntilLocalizedTest(unittest.TestCase):
         rospy.init_node("test_spin_until_localized")
         rospy.wait_for_service("global_localization", 30.0)
 
-    def test_1_a_robot_somewhere_in_the_home_is_found(self):
+    def test_1_a_robot_is_localized_from_an_unknown_pose(self):
         done = spin("--timeout", "60")
         self.assertEqual(done.returncode, 0, done.stderr.decode())
         self.assertIn("localized at", done.stdout.decode())
@@ -39,14 +39,14 @@ class SpinUntilLocalizedTest(unittest.TestCase):
         truth = pose2_from_msg(
             rospy.wait_for_message("base_pose_ground_truth", Odometry, PATIENCE_SECONDS).pose.pose
         )
-        # Since the last pose the robot may have turned on for a moment, but not driven.
+        # Since the last pose the robot may have turned, but not driven.
         self.assertLess(found.distance_to(truth), NEAR)
 
     def test_2_the_robot_stands_still_afterwards(self):
         before, after = (self.heading_after(seconds) for seconds in (1.0, 1.0))
         self.assertLess(abs(wrap(after - before)), 0.01)
 
-    def test_3_in_a_map_of_another_place_it_is_not_found(self):
+    def test_3_with_a_map_of_another_place_localization_fails(self):
         request = SetMapArrays._request_class()
         request.map = grid_to_msg(room(), rospy.Time.now(), "map")
         request.initial_pose.header.frame_id = "map"
@@ -57,12 +57,12 @@ class SpinUntilLocalizedTest(unittest.TestCase):
         self.assertEqual(done.returncode, 1)
         self.assertIn("not localized within 10 s", done.stderr.decode())
 
-    def test_4_without_localization_it_says_so(self):
+    def test_4_a_missing_localization_is_reported(self):
         done = spin("global_localization:=nowhere")
         self.assertEqual(done.returncode, 1)
         self.assertIn("no service /nowhere", done.stderr.decode())
 
-    def test_5_a_senseless_time_is_refused(self):
+    def test_5_a_negative_timeout_is_rejected(self):
         self.assertEqual(spin("--timeout", "-3").returncode, 2)
 
     def heading_after(self, seconds):

@@ -2,8 +2,8 @@
 """How far amcl_lite's localization_quality can be trusted: judged at right and at wrong poses.
 
 Right poses are the truth, off by a few centimetres; wrong ones lie anywhere, or near, or where scan matching
-draws a wrong pose to. Some scans are cut short by things that are not on the map. The quality's coefficients
-were fitted in map/home.world; the worlds hallway and office, and these drives, had no part in that.
+draws a wrong pose to. Some scans are cut short by obstacles that are not on the map. The quality's
+coefficients were fitted in map/home.world; hallway, office and these drives were not used for it.
 
     tests/benchmarks/localization_quality.py [--seconds 60]
 """
@@ -80,7 +80,7 @@ def _judged(place: Place, observations: List[Observation], rng) -> List[Tuple[fl
 
 
 def _cut_short(scan: Scan, share: float, rng) -> Scan:
-    """A scan of which ``share`` of the beams, in bunches, end before things that are not on the map."""
+    """A scan of which ``share`` of the beams, in bunches, end at obstacles that are not on the map."""
     ranges, cut = scan.ranges.copy(), 0
     while cut < share * len(ranges):
         bunch = (rng.integers(len(ranges)) + np.arange(rng.integers(5, 40))) % len(ranges)

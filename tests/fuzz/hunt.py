@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Gives every reader of files thousands of broken ones, and keeps those that it does not refuse in words."""
+"""Feeds thousands of broken files to each file reader and stores those not rejected with a PlanarError."""
 
 import argparse
 import hashlib
@@ -23,24 +23,25 @@ sys.path[:0] = [str(FOLDER), *(str(path) for path in sorted(ROOT.glob("src/**/sr
 from readers import READERS, Reader, prepare  # noqa: E402
 from trial import SECONDS  # noqa: E402
 
-# A reader that does not even hear the alarm is ended.
-DEAF_SECONDS = 12.0 * SECONDS
-# To import it all, and to read what was found before.
+# A reader that does not react to its time limit is killed after this time [s].
+UNRESPONSIVE_SECONDS = 12.0 * SECONDS
+# Time limit for imports and for reading the corpus [s].
 START_SECONDS = 300.0
-TELL_SECONDS = 15.0
+# Period of progress output [s].
+LOG_SECONDS = 15.0
 MANY = 1_000_000_000
 
 
 @dataclass
 class Hunt:
-    """How many files a reader was given, and by each fault a file that it was found with."""
+    """Number of files read, and for each fault a file that causes it."""
 
     cases: int = 0
     faults: Dict[str, Path] = field(default_factory=dict)
 
 
 class Hunter:
-    """Watches over a process that reads one broken file after the other; if it dies, another follows."""
+    """Runs a process that reads broken files, and restarts it after a crash."""
 
     def __init__(self, reader: Reader, folder: Path, output: Path, options: argparse.Namespace):
         self._reader, self._case = reader, folder / reader.file_name
@@ -51,14 +52,14 @@ class Hunter:
         self._news = b""
 
     def hunt(self) -> Hunt:
-        """Until the time is over, or all cases were read."""
+        """Run until the time is over or all cases are read."""
         self._corpus.mkdir(parents=True, exist_ok=True)
         for data in self._reader.seeds:
             (self._corpus / hashlib.sha256(data).hexdigest()[:12]).write_bytes(data)
         attempt = 0
         while time.monotonic() < self._ending and self._found.cases < self._cases:
             before = self._found.cases
-            fault = self._read_on(self._seed + attempt)
+            fault = self._run_process(self._seed + attempt)
             attempt += 1
             if fault:
                 self._keep(fault, self._case.read_bytes())
@@ -66,27 +67,27 @@ class Hunter:
                 raise RuntimeError(f"no file was read: {FOLDER / 'reading.py'} {self._reader.name}")
         return self._found
 
-    def _read_on(self, seed: int) -> str:
-        """Until the process ends; says of what, if it should not have."""
-        news, tell = os.pipe()
+    def _run_process(self, seed: int) -> str:
+        """Run one process to its end; return how it failed, or an empty text."""
+        news, news_writer = os.pipe()
         arguments: Dict[str, object] = {
             "case": self._case,
             "corpus": self._corpus,
             "seconds": max(1, round(self._ending - time.monotonic())),
             "cases": self._cases - self._found.cases,
             "seed": seed,
-            "news": tell,
+            "news": news_writer,
         }
-        words = [f"--{name}={value}" for name, value in arguments.items()]
+        flags = [f"--{name}={value}" for name, value in arguments.items()]
         process = subprocess.Popen(
-            [sys.executable, str(FOLDER / "reading.py"), self._reader.name, *words],
+            [sys.executable, str(FOLDER / "reading.py"), self._reader.name, *flags],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
-            pass_fds=[tell],
-            cwd=self._case.parent,  # Atheris leaves files where it stands
+            pass_fds=[news_writer],
+            cwd=self._case.parent,  # Atheris writes files to its working directory
         )
-        os.close(tell)
+        os.close(news_writer)
         try:
             return self._watch(process, news)
         finally:
@@ -96,30 +97,30 @@ class Hunter:
 
     def _watch(self, process: "subprocess.Popen[bytes]", news: int) -> str:
         before, patience = self._found.cases, START_SECONDS
-        heard = told = time.monotonic()
+        last_event = last_log = time.monotonic()
         while True:
             if select.select([news], [], [], 0.5)[0]:
                 events = self._events(news)
                 if not events:
                     break
-                heard, patience = time.monotonic(), DEAF_SECONDS
+                last_event, patience = time.monotonic(), UNRESPONSIVE_SECONDS
                 for event in events:
                     self._found.cases = before + event["cases"]
                     if "fault" in event:
                         self._keep(event["fault"], bytes.fromhex(event["data"]))
             now = time.monotonic()
-            if now - told > TELL_SECONDS:
-                told = now
-                self._say(f"{self._found.cases} files, {len(self._found.faults)} faults")
-            if now - heard > patience:
-                return f"deaf for {patience:g} s"
+            if now - last_log > LOG_SECONDS:
+                last_log = now
+                self._print(f"{self._found.cases} files, {len(self._found.faults)} faults")
+            if now - last_event > patience:
+                return f"unresponsive for {patience:g} s"
         code = process.wait()
         if code < 0:
             return f"ended by {signal.Signals(-code).name}"
         return f"ended with exit code {code}" if code else ""
 
     def _events(self, news: int) -> List[Dict[str, object]]:
-        """What has been told since; nothing if the process has ended."""
+        """Read the events since the last call; empty if the process has ended."""
         while True:
             data = os.read(news, 1 << 20)
             self._news += data
@@ -134,34 +135,34 @@ class Hunter:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(data)
         self._found.faults[fault] = path
-        self._say(f"{fault}\n    {path}")
+        self._print(f"{fault}\n    {path}")
 
-    def _say(self, text: str) -> None:
+    def _print(self, text: str) -> None:
         print(f"  {self._reader.name}: {text}", flush=True)
 
 
-def _quick_folder() -> Optional[str]:
-    """In memory, where there is such a folder: every file is written once and read once."""
+def _memory_folder() -> Optional[str]:
+    """Return a folder in memory, if there is one; each file is written and read once."""
     return "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(prog="fuzz.sh", description=__doc__)
     parser.add_argument("--minutes", type=float, default=5.0, help="for all readers together (default: 5)")
-    parser.add_argument("--cases", type=int, help="for each reader, if there is the time (default: no end)")
+    parser.add_argument("--cases", type=int, help="most files for each reader (default: no limit)")
     parser.add_argument("--reader", nargs="+", choices=READERS, default=list(READERS), metavar="NAME")
-    parser.add_argument("--seed", type=int, default=0, help="of all chance (default: 0)")
-    parser.add_argument("--output", type=Path, default=ROOT / "build/fuzz", help="findings are kept here")
+    parser.add_argument("--seed", type=int, default=0, help="random seed (default: 0)")
+    parser.add_argument("--output", type=Path, default=ROOT / "build/fuzz", help="folder for findings")
     options = parser.parse_args()
     if not options.minutes > 0.0:
         parser.error("--minutes must be positive")
     if options.cases is not None and options.cases < 1:
         parser.error("--cases must be positive")
     if not find_spec("atheris"):
-        parser.error("Atheris is there for x86_64 only")
+        parser.error("Atheris is not installed; run ./scripts/setup.sh --dev (x86_64 only)")
     faults = cases = 0
     for name in options.reader:
-        with tempfile.TemporaryDirectory(dir=_quick_folder()) as folder:
+        with tempfile.TemporaryDirectory(dir=_memory_folder()) as folder:
             prepare(Path(folder))
             found = Hunter(READERS[name], Path(folder), options.output, options).hunt()
         print(f"{name}: {found.cases} files, {len(found.faults)} faults", flush=True)

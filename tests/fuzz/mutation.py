@@ -1,4 +1,4 @@
-"""Files changed into others that nobody would write, but that come."""
+"""Mutations of files: numbers, words, bits, lines and blocks."""
 
 import random
 import re
@@ -6,7 +6,7 @@ from typing import Callable, Sequence, Tuple
 
 NUMBER = re.compile(rb"-?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
 WORD = re.compile(rb"[A-Za-z_]\w*")
-# What stands for a number, and for a word.
+# Replacements of numbers, and of words.
 NUMBERS: Tuple[bytes, ...] = (
     b"nan", b".nan", b"NaN", b"inf", b"-.inf", b"Infinity", b"1e308", b"-1e308", b"1e400", b"1e-320",
     b"0", b"-0.0", b"-1", b"1.5", b"4294967296", b"18446744073709551616", b"9" * 400, b"true", b"null",
@@ -20,7 +20,7 @@ WORDS: Tuple[bytes, ...] = (
 
 
 def mutated(data: bytes, others: Sequence[bytes], rng: random.Random) -> bytes:
-    """``data`` after a few changes; ``others``: files of its kind, to take parts from."""
+    """Return ``data`` after a few random changes, some with parts of ``others``, files of the same kind."""
     for _ in range(rng.choice((1, 1, 1, 2, 3, 6))):
         data = rng.choice(_CHANGES)(data, others, rng)
     return data
@@ -59,7 +59,7 @@ def _take_over(data: bytes, others: Sequence[bytes], rng: random.Random) -> byte
 
 
 def _extreme(data: bytes, others: Sequence[bytes], rng: random.Random) -> bytes:
-    """A whole number of a binary file that is as large, or as small, as it can be."""
+    """Replace bytes by an extreme integer of a binary file."""
     start = rng.randrange(len(data) + 1)
     size = rng.choice((1, 2, 4, 8))
     number = rng.choice((b"\xff", b"\x00", b"\x7f", b"\x80")) * size
@@ -67,7 +67,7 @@ def _extreme(data: bytes, others: Sequence[bytes], rng: random.Random) -> bytes:
 
 
 def _line(data: bytes, others: Sequence[bytes], rng: random.Random) -> bytes:
-    """Lines go missing, come twice, or come elsewhere."""
+    """Remove, duplicate or move a line."""
     lines = data.split(b"\n")
     taken = lines.pop(rng.randrange(len(lines)))
     for _ in range(rng.choice((0, 1, 2))):

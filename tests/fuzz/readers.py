@@ -1,4 +1,4 @@
-"""Every reader of files: what it is called, what it reads to begin with, and how."""
+"""All file readers, with their names and example files."""
 
 import io
 import json
@@ -14,15 +14,19 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 CORPUS = Path(__file__).resolve().parent / "corpus"
 MESHES = "meshes"
-# Many small files get further than few large ones.
+# Largest seed [bytes]: many small files reach more code than few large ones.
 SEED_BYTES = 6000
 
 
 @dataclass(frozen=True)
 class Reader:
-    """``read`` takes a file called ``file_name`` in a folder where what it refers to lies as well.
+    """A function that reads a file; for an invalid file it may raise a PlanarError and nothing else.
 
-    ``examples``: what it reads without complaint. A PlanarError is an answer, whatever else is raised none.
+    Attributes:
+        name: Name of the reader.
+        file_name: Name of the file that it is given.
+        read: The function; the files to which its file refers are in the same folder.
+        examples: Returns valid files.
     """
 
     name: str
@@ -32,18 +36,18 @@ class Reader:
 
     @property
     def seeds(self) -> List[bytes]:
-        """Examples, and what has been found before, as far as they are small."""
+        """Examples and earlier findings that are small."""
         known = [*self.examples(), *(path.read_bytes() for path in self.findings)]
         return [data for data in known if len(data) <= SEED_BYTES] or known
 
     @property
     def findings(self) -> List[Path]:
-        """Files that were not read as they should have been."""
+        """Files that once caused a fault."""
         return sorted((CORPUS / self.name).glob("*"))
 
 
 def prepare(folder: Path) -> None:
-    """Puts what files refer to into a folder."""
+    """Write the files to which the examples refer."""
     (folder / "home.pgm").write_bytes(PGM)
     (folder / MESHES).mkdir()
 
@@ -63,7 +67,7 @@ def _map(path: Path) -> object:
 
 
 def _map_image(path: Path) -> object:
-    """With a lower limit of pixels: a file of a few bytes with a hundred million takes a second."""
+    """Read with a lower pixel limit: a few bytes can encode a hundred million pixels, which take a second."""
     from planar.maps import map_file
 
     with patch.object(map_file, "MAX_PIXELS", 1_000_000):
@@ -149,7 +153,7 @@ def _world(path: Path) -> object:
 def _model(path: Path) -> object:
     from sim_bridge.sdf.reader import read_model
 
-    return read_model(path.read_bytes(), "thing", np.eye(4))
+    return read_model(path.read_bytes(), "object", np.eye(4))
 
 
 MODEL = """<sdf version='1.6'><model name='box'><link name='l'><pose>0 0 1 0 0 0.5</pose>
@@ -171,7 +175,7 @@ def _robot(path: Path) -> object:
 def _prop(path: Path) -> object:
     from sim_bridge.description.robot import read_prop
 
-    return read_prop(path.read_bytes().decode("utf-8", "replace"), "thing", np.eye(4))
+    return read_prop(path.read_bytes().decode("utf-8", "replace"), "object", np.eye(4))
 
 
 PROP = """<robot name='box'><link name='base'><inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1'
@@ -226,7 +230,7 @@ def _state(path: Path) -> object:
 
 
 def _states() -> List[bytes]:
-    """A state of two keys, stored without compression, so that numbers can be got at."""
+    """A state of two keyframes without compression, so that mutations reach its numbers."""
     file = io.BytesIO()
     floats = {
         "points_xy": (4, 2),

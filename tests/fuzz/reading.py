@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""One reader under Atheris: reads broken files until time or cases are over, and tells of its faults.
+"""Runs one reader under Atheris until time or cases are over, and reports its faults.
 
-Atheris watches which ways through the reader files go, and changes further what goes a new one.
+Atheris measures code coverage and mutates files that reach new code further.
 """
 
 import argparse
@@ -23,13 +23,14 @@ from mutation import mutated  # noqa: E402
 from readers import READERS, Reader  # noqa: E402
 from trial import limit_memory, tried  # noqa: E402
 
-# Besides our own: libraries in Python that read for us.
+# Python libraries that are instrumented besides our packages.
 LIBRARIES = ["yaml", "PIL", "trimesh", "collada", "rosbag", "genpy"]
-# Files grow to as many bytes, or to twice the longest example: short ones are read the sooner.
-LEAST_LONGEST = 4096
-# Of the changes; the rest are Atheris' own, which know nothing of numbers and words.
-SHARE_OF_OURS = 0.7
-TELL_SECONDS = 1.0
+# Files grow to this size [bytes], or to twice the longest example.
+MIN_SIZE_LIMIT = 4096
+# Share of mutations from mutation.py; the rest are Atheris' own, which do not parse numbers and words.
+CUSTOM_SHARE = 0.7
+# Period of progress events [s].
+EVENT_SECONDS = 1.0
 
 
 def main() -> None:
@@ -56,29 +57,29 @@ def main() -> None:
 
 
 def _fuzz(reader: Reader, options: argparse.Namespace) -> None:
-    seeds, faults, count, told = reader.seeds, set(), 0, 0.0
-    longest = max(LEAST_LONGEST, 2 * max(map(len, seeds)))
+    seeds, faults, count, last_event = reader.seeds, set(), 0, 0.0
+    longest = max(MIN_SIZE_LIMIT, 2 * max(map(len, seeds)))
 
     def read(data: bytes) -> None:
-        nonlocal count, told
+        nonlocal count, last_event
         options.case.write_bytes(data)
         outcome = tried(reader, options.case)
         count += 1
-        if time.monotonic() - told > TELL_SECONDS or count == options.cases:
-            told = time.monotonic()
-            _tell(options.news, cases=count)
-        if outcome.fault and outcome.way not in faults:
-            faults.add(outcome.way)
-            _tell(options.news, cases=count, fault=outcome.fault, data=data.hex())
+        if time.monotonic() - last_event > EVENT_SECONDS or count == options.cases:
+            last_event = time.monotonic()
+            _report(options.news, cases=count)
+        if outcome.fault and outcome.path not in faults:
+            faults.add(outcome.path)
+            _report(options.news, cases=count, fault=outcome.fault, data=data.hex())
 
     def change(data: bytes, _longest: int, seed: int) -> bytes:
         rng = random.Random(seed)
-        if rng.random() < SHARE_OF_OURS:
+        if rng.random() < CUSTOM_SHARE:
             return mutated(data, seeds, rng)[:longest]
         return atheris.Mutate(data, len(data))
 
     flags = {
-        "seed": options.seed + 1,  # 0 would be a seed by the clock
+        "seed": options.seed + 1,  # 0 means a seed from the clock
         "runs": options.cases,
         "max_total_time": options.seconds,
         "max_len": longest,
@@ -86,14 +87,14 @@ def _fuzz(reader: Reader, options: argparse.Namespace) -> None:
         "timeout": 0,  # time and memory are limited by the trial
         "rss_limit_mb": 0,
         "verbosity": 0,
-        **{f"handle_{name}": 0 for name in ("abrt", "bus", "fpe", "ill", "segv")},  # the hunt sees who died
+        **{f"handle_{name}": 0 for name in ("abrt", "bus", "fpe", "ill", "segv")},  # hunt.py reports crashes
     }
     words = [sys.argv[0], *(f"-{name}={value}" for name, value in flags.items()), str(options.corpus)]
     atheris.Setup(words, read, custom_mutator=change)
     atheris.Fuzz()
 
 
-def _tell(descriptor: int, **event: object) -> None:
+def _report(descriptor: int, **event: object) -> None:
     os.write(descriptor, json.dumps(event).encode() + b"\n")
 
 
@@ -102,7 +103,7 @@ def _packages() -> List[str]:
 
 
 def _compiled() -> List[str]:
-    """Modules that numba compiles: it would not know what Atheris puts into them."""
+    """Modules compiled by numba, which cannot compile instrumented code."""
     found = []
     for source in SOURCES:
         for path in source.rglob("*.py"):

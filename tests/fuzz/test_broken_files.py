@@ -1,4 +1,4 @@
-"""Broken files, those once read wrongly and a few hundred new ones, are read or refused in words."""
+"""Broken files, earlier findings and a few hundred new ones, are read or rejected with a PlanarError."""
 
 import random
 import sys
@@ -30,18 +30,18 @@ def fault_of(name, data, folder):
 
 
 @pytest.mark.parametrize("name", READERS)
-def test_what_is_whole_is_read(name, folder):
+def test_valid_files_are_read(name, folder):
     for data in READERS[name].examples():
         assert fault_of(name, data, folder) is None
 
 
 @pytest.mark.parametrize(("name", "path"), FOUND, ids=[f"{name}-{path.name}" for name, path in FOUND])
-def test_a_file_that_was_read_wrongly_is_not_any_more(name, path, folder):
+def test_earlier_findings_cause_no_fault(name, path, folder):
     assert fault_of(name, path.read_bytes(), folder) is None
 
 
 @pytest.mark.parametrize("name", READERS)
-def test_a_broken_file_is_refused_in_words(name, folder):
+def test_a_broken_file_is_rejected_with_a_planar_error(name, folder):
     hypothesis = pytest.importorskip("hypothesis")
     seeds = READERS[name].seeds
 

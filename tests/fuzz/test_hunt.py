@@ -1,4 +1,4 @@
-"""The hunt under Atheris, which ./scripts/setup.sh --dev installs."""
+"""Fuzzing under Atheris, which ./scripts/setup.sh --dev installs."""
 
 import subprocess
 import sys
@@ -9,7 +9,7 @@ import pytest
 HUNT = Path(__file__).parent / "hunt.py"
 
 
-def test_a_reader_is_given_as_many_files_as_asked_for_and_goes_on_from_what_it_learnt(tmp_path):
+def test_a_reader_is_given_the_requested_number_of_files_and_extends_its_corpus(tmp_path):
     pytest.importorskip("atheris")
     command = [sys.executable, str(HUNT), "--reader", "zones", "--cases", "500", "--output", str(tmp_path)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=300.0, check=False)
@@ -18,7 +18,7 @@ def test_a_reader_is_given_as_many_files_as_asked_for_and_goes_on_from_what_it_l
     assert len(list((tmp_path / "corpus/zones").iterdir())) > 3
 
 
-def test_senseless_limits_are_refused(tmp_path):
+def test_limits_that_are_not_positive_are_rejected(tmp_path):
     for option in ("--cases", "--minutes"):
         done = subprocess.run(
             [sys.executable, str(HUNT), option, "0"],

@@ -1,4 +1,4 @@
-"""One file given to a reader: what came of it, within limits of time and memory."""
+"""Reads one file within limits of time and memory, and classifies the outcome."""
 
 import os
 import resource
@@ -13,34 +13,36 @@ from readers import ROOT, Reader
 
 from planar import PlanarError
 
-# Of the processor; of the clock on the wall, for who waits, six times as much.
+# Limit of CPU time [s]; that of wall-clock time is six times as long.
 SECONDS = 5.0
 MORE_BYTES = 1 << 30
 
 
 class TooLongError(BaseException):
-    """No Exception, lest a reader takes it for one of its own."""
+    """The time limit is exceeded; not an Exception, so that no reader catches it."""
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """``fault``: what is wrong with the reader, in words; None if it kept its word.
+    """Outcome of reading a file.
 
-    ``way``: which way through the reader this was; another for most files that are told apart.
+    Attributes:
+        fault: What is wrong with the reader; None if it read or rejected the file.
+        path: Code path through the reader, to distinguish faults.
     """
 
     fault: Optional[str]
-    way: Tuple[object, ...]
+    path: Tuple[object, ...]
 
 
 def tried(reader: Reader, path: Path) -> Outcome:
-    """Reads a file."""
+    """Read a file and return the outcome."""
     before = _most_bytes()
     try:
         with _time_limit():
             reader.read(path)
     except PlanarError as error:
-        outcome = Outcome(None, _way(error))
+        outcome = Outcome(None, _code_path(error))
     except TooLongError:
         return Outcome(f"not read within {SECONDS:g} s", ("too long",))
     except BaseException as error:
@@ -51,12 +53,12 @@ def tried(reader: Reader, path: Path) -> Outcome:
     else:
         outcome = Outcome(None, ("read",))
     if _most_bytes() - before > MORE_BYTES:
-        return Outcome("takes more than 1 GB", ("memory", *outcome.way))
+        return Outcome("takes more than 1 GB", ("memory", *outcome.path))
     return outcome
 
 
 def limit_memory() -> None:
-    """Of this process from now on, so that the machine goes on working."""
+    """Limit the memory of this process, to protect the machine."""
     pages = int(Path("/proc/self/statm").read_text().split()[0])
     most = pages * os.sysconf("SC_PAGE_SIZE") + 2 * MORE_BYTES
     resource.setrlimit(resource.RLIMIT_AS, (most, most))
@@ -83,7 +85,7 @@ def _time_limit() -> Iterator[None]:
             signal.signal(number, handler)
 
 
-def _way(error: BaseException) -> Tuple[object, ...]:
+def _code_path(error: BaseException) -> Tuple[object, ...]:
     lines = tuple((code.co_name, number) for code, number in _frames(error))
     return (type(error).__name__, *lines)
 
@@ -93,7 +95,7 @@ def _frames(error: BaseException):
 
 
 def _place(error: BaseException) -> str:
-    """The last line of ours that led to it."""
+    """Return the last line in src/ of the traceback."""
     ours = [
         f"{Path(code.co_filename).relative_to(ROOT)}:{number}"
         for code, number in _frames(error)

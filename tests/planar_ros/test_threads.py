@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A thread that dies takes its node along; what comes too late while a node ends is no news."""
+"""A failing thread ends its node; messages and logs during shutdown cause no errors."""
 
 import signal
 import subprocess
@@ -14,10 +14,10 @@ END_SECONDS = 30.0
 
 
 class ThreadsTest(unittest.TestCase):
-    def test_the_node_ends_with_the_reason(self):
+    def test_a_failing_thread_ends_its_node_with_an_error(self):
         for thread in ("worker", "timer"):
             run = subprocess.run(
-                ["rosrun", "home_service_tests", "node_of_threads.py", thread],
+                ["rosrun", "home_service_tests", "node_with_failing_thread.py", thread],
                 stdout=subprocess.PIPE,
                 stderr=subprocess.STDOUT,
                 text=True,
@@ -26,12 +26,13 @@ class ThreadsTest(unittest.TestCase):
             )
             self.assertEqual(run.returncode, 70, run.stdout)
             self.assertRegex(
-                run.stdout, r"\[/node_of_threads\] error: the thread .* has died of ValueError: no way on"
+                run.stdout,
+                r"\[/node_with_failing_thread\] error: the thread .* has died of ValueError: no way on",
             )
-            self.assertNotIn("/node_of_threads", rosnode.get_node_names())
+            self.assertNotIn("/node_with_failing_thread", rosnode.get_node_names())
 
-    def test_an_answer_that_comes_while_the_node_ends_is_dropped_in_silence(self):
-        command = ["rosrun", "home_service_tests", "node_of_answers.py"]
+    def test_a_message_published_during_shutdown_is_dropped_silently(self):
+        command = ["rosrun", "home_service_tests", "node_with_late_answer.py"]
         run = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         questions = rospy.Publisher("questions", Empty, queue_size=1, latch=True)
         questions.publish(Empty())
@@ -40,8 +41,8 @@ class ThreadsTest(unittest.TestCase):
         output, _ = run.communicate(timeout=END_SECONDS)
         self.assertEqual(output, "")
 
-    def test_a_log_that_cannot_be_written_while_the_node_ends_is_no_reason_for_a_traceback(self):
-        command = ["rosrun", "home_service_tests", "node_without_a_log.py"]
+    def test_an_unwritable_log_causes_no_traceback_on_shutdown(self):
+        command = ["rosrun", "home_service_tests", "node_without_log.py"]
         run = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         self.assertEqual(run.stdout.readline(), "up\n")
         run.send_signal(signal.SIGINT)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A node that accepts goals and comes to the end of none."""
+"""A node whose action server accepts goals and never finishes one."""
 
 from move_base_msgs.msg import MoveBaseAction
 
@@ -14,4 +14,4 @@ def start():
     return server
 
 
-run("node_of_an_action", start)
+run("node_with_action", start)

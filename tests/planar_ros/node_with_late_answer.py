@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A node that answers what it was asked only when its topics have been closed, while it shuts down."""
+"""A node that publishes an answer only after its topics are closed on shutdown."""
 
 import time
 
@@ -23,4 +23,4 @@ def start():
     return rospy.Subscriber("questions", Empty, answer)
 
 
-run("node_of_answers", start)
+run("node_with_late_answer", start)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A node whose log can be written no more, from the moment on at which it is up, and that logs at its end."""
+"""A node whose log file becomes unwritable after its start, and that logs on shutdown."""
 
 import resource
 
@@ -14,4 +14,4 @@ def start():
     print("up", flush=True)
 
 
-run("node_without_a_log", start)
+run("node_without_log", start)

@@ -1,4 +1,4 @@
-"""Plays bags to a localization node, scan by scan: each waits for the answer to the one before."""
+"""Plays bags to a localization node scan by scan, waiting for the transform after each scan."""
 
 import subprocess
 import threading
@@ -25,14 +25,14 @@ from planar_ros.messages.conversion import (
 
 TOLERANCE = 0.1
 START_SECONDS, RUN_SECONDS = 30.0, 60.0
-# How long, wall seconds, the answer to a scan is waited for, and how many in a row may be missing.
+# Longest wall-clock wait for the transform after a scan [s], and most scans in a row without one.
 GRACE_SECONDS, MOST_UNANSWERED = 0.5, 20
-# Variances of a pose given by hand: m^2, m^2, rad^2.
-BY_HAND = (0.25, 0.25, 0.0685)
+# Variances of an initial pose [m^2, m^2, rad^2].
+INITIAL_VARIANCES = (0.25, 0.25, 0.0685)
 
 
-class BagStage:
-    """The rest of a robot: map, clock, transforms and scans. One node named ``amcl`` at a time."""
+class BagEnvironment:
+    """Map, clock, transforms and scans for one localization node named ``amcl`` at a time."""
 
     def __init__(self, package: str):
         self._package = package
@@ -50,12 +50,12 @@ class BagStage:
         self._service = rospy.Service("static_map", GetMapArrays, lambda request: {"map": self._map})
 
     def start_node(self, grid: OccupancyGrid, parameters: Dict[str, object]):
-        """Starts the node with ``parameters`` and nothing else."""
+        """Start the node with exactly these parameters."""
         self.stop_node()
         self._process = subprocess.Popen(self._command(grid, parameters))
 
     def run_node(self, grid: OccupancyGrid, parameters: Dict[str, object], *arguments: str) -> str:
-        """Starts the node with command line ``arguments``; returns what it has printed when it ends."""
+        """Run the node with command line ``arguments`` to its end; return its output."""
         self.stop_node()
         command = [*self._command(grid, parameters), *arguments]
         done = subprocess.run(
@@ -79,8 +79,8 @@ class BagStage:
             while self._scans.get_num_connections() > 0:
                 time.sleep(0.05)
 
-    def play(self, bag_path: str, actions: Dict[float, Callable[[rospy.Time], None]] = {}) -> "Ending":
-        """Plays a bag from its start; ``actions`` are done at seconds of it. Returns where it all ended."""
+    def play(self, bag_path: str, actions: Dict[float, Callable[[rospy.Time], None]] = {}) -> "FinalPoses":
+        """Play a bag; ``actions`` are called at times since its start [s]. Return the last poses."""
         with rosbag.Bag(bag_path) as bag:
             start = bag.get_start_time()
             self._wait_for_node(time_of(start))
@@ -101,24 +101,24 @@ class BagStage:
                     odom_in_map = self._answer_to(stamp, GRACE_SECONDS)
                     unanswered = unanswered + 1 if odom_in_map is None else 0
                     if unanswered > MOST_UNANSWERED:
-                        raise AssertionError(f"{unanswered} scans have not been answered")
+                        raise AssertionError(f"{unanswered} scans without a transform")
                     if odom_in_map is not None:
                         found = odom_in_map @ base_in_odom
                 else:
                     truth = pose2_from_msg(message.pose.pose)
-        return Ending(found, truth)
+        return FinalPoses(found, truth)
 
-    def let_time_pass(self, seconds: float):
-        """After a bag: nothing but the clock goes on."""
+    def advance_clock(self, seconds: float):
+        """Advance simulated time after a bag, without scans."""
         self._now += rospy.Duration(seconds)
         self._clock.publish(self._now)
 
-    def tell_pose(self, base_in_map: Pose2, stamp: rospy.Time):
+    def publish_initial_pose(self, base_in_map: Pose2, stamp: rospy.Time):
         message = PoseWithCovarianceStamped()
         message.header.frame_id, message.header.stamp = "map", stamp
         message.pose.pose = pose2_to_msg(base_in_map)
         covariance = [0.0] * 36
-        covariance[0], covariance[7], covariance[35] = BY_HAND
+        covariance[0], covariance[7], covariance[35] = INITIAL_VARIANCES
         message.pose.covariance = covariance
         self._initial_pose.publish(message)
         time.sleep(GRACE_SECONDS)
@@ -129,11 +129,11 @@ class BagStage:
     def _wait_for_node(self, stamp):
         deadline = time.monotonic() + START_SECONDS
         publishers = (self._scans, self._static, self._initial_pose)
-        # Besides the node this stage itself hears transforms.
+        # Two: this process subscribes to transforms too.
         while self._tf.get_num_connections() < 2 or not all(one.get_num_connections() for one in publishers):
             self._clock.publish(stamp)
             if time.monotonic() > deadline:
-                raise AssertionError("the node does not listen to scans")
+                raise AssertionError("the node has not subscribed to scans")
             time.sleep(0.05)
 
     def _answer_to(self, stamp, seconds) -> Optional[Pose2]:
@@ -150,8 +150,8 @@ class BagStage:
                     self._has_answer.notify_all()
 
 
-class Ending:
-    """Where a node believes the robot to be at the end of a bag, and where it is."""
+class FinalPoses:
+    """Estimated and true pose at the end of a bag."""
 
     def __init__(self, found: Optional[Pose2], truth: Pose2):
         self.found, self.truth = found, truth

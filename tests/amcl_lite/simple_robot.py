@@ -1,4 +1,4 @@
-"""A robot without physics for node tests: it stands where it is told and scans a picture of a room."""
+"""A robot without physics for node tests: tests set its pose, and it scans a map of two rooms."""
 
 import math
 
@@ -27,14 +27,14 @@ RANGE_MAX = 8.0
 
 
 def room(resolution=0.05, cell_size=0.4) -> Grid:
-    """Two rooms, 8 x 3.6 m, its lower left corner at (0, 0)."""
+    """Map of two rooms, 8 x 3.6 m, with its lower left corner at (0, 0)."""
     cells = grid_from_picture(ROOM, resolution).cells
     times = round(cell_size / resolution)
     return Grid(np.kron(cells, np.ones((times, times), dtype=np.int8)), resolution)
 
 
-class ToyRobot:
-    """Odometry that starts at (0, 0, 0) and a laser, both of a robot that is moved by hand."""
+class SimpleRobot:
+    """Publishes odometry, starting at (0, 0, 0), and laser scans of a robot moved by ``move``."""
 
     def __init__(self, base_in_map: Pose2, laser_frame="laser", base_frame="base_link"):
         self.base_in_map = base_in_map
@@ -48,7 +48,7 @@ class ToyRobot:
         rospy.Service("static_map", GetMapArrays, lambda request: {"map": self.map_message})
 
     def move(self, step: Pose2, slip: Pose2 = Pose2()):
-        """Moves on by ``step``; the odometry is wrong by ``slip``."""
+        """Move by ``step``; odometry has the error ``slip``."""
         self.base_in_map = self.base_in_map @ step
         self.base_in_odom = self.base_in_odom @ step @ slip
 
@@ -58,7 +58,7 @@ class ToyRobot:
         return (true + self._rng.normal(0.0, 0.01, BEAMS)).astype(np.float32)
 
     def sense(self, ranges=None, stamp=None, tf_late=0.0, changed=None) -> rospy.Time:
-        """Publishes odometry and a scan of one stamp, which is returned; ``changed``: fields of the scan."""
+        """Publish odometry and a scan with one stamp and return it; ``changed``: fields of the scan."""
         stamp = stamp or rospy.Time.now()
         scan = LaserScanArrays()
         scan.header.stamp, scan.header.frame_id = stamp, self.laser_frame
