@@ -145,7 +145,7 @@ def test_a_marker_that_arrives_before_its_mission_is_assigned_when_the_mission_i
 
 
 def test_a_pickup_is_judged_by_the_truth_at_its_moment(referee):
-    """A robot that is driven away while it picks up, and says that it has picked up."""
+    """A robot that is driven away while it picks up, and reports that it has picked up."""
     for stamp, x in ((1.0, 2.01), (2.0, 2.9), (3.0, 4.0)):
         referee._on_truth(truth(stamp, x))
     referee._on_mission(arrival(1.0))

@@ -12,7 +12,7 @@ from std_msgs.msg import Header
 
 from planar_ros.lockstep import transport
 from planar_ros.lockstep.message_buffer import MessageBuffer
-from planar_ros.lockstep.service_calls import call_headers, delay_service_replies
+from planar_ros.lockstep.service_calls import CallMonitor, call_headers, delay_service_replies
 from planar_ros.lockstep.threads import LockstepThreads
 from planar_ros.lockstep.ticker import ProgressPublisher, Ticker
 from planar_ros.lockstep.transport import ANSWER_TOPIC, INSTANT_TOPIC, STATIC_TOPIC, LockstepConnection
@@ -63,7 +63,8 @@ class LockstepClient:
         if rospy.get_param("/use_sim_time", False):
             transport.install()
             self._buffer.install()
-            delay_service_replies(self._await_answer)
+            monitor = CallMonitor(lambda: self._buffer.members, self.add_remark)
+            delay_service_replies(self._await_answer, monitor)
             self._answers = rospy.Publisher(ANSWER_TOPIC, Answer, queue_size=10, tcp_nodelay=True)
             rospy.Subscriber(INSTANT_TOPIC, Moment, self._on_moment, queue_size=100, tcp_nodelay=True)
             rospy.on_shutdown(self._take_leave)

@@ -15,7 +15,7 @@ from std_msgs.msg import Header, String
 from planar_ros.lockstep import transport
 from planar_ros.lockstep.client import STATIC_PUBLISHERS_PARAMETER, WAIT_FOR_PARAMETER
 from planar_ros.lockstep.message_buffer import MessageBuffer
-from planar_ros.lockstep.service_calls import delay_service_replies
+from planar_ros.lockstep.service_calls import CallMonitor, delay_service_replies
 from planar_ros.lockstep.transport import ANSWER_TOPIC, INSTANT_TOPIC, LockstepConnection
 from planar_ros.messages.conversion import time_of
 from sim_bridge.lock_step import LockStepCoordinator
@@ -64,7 +64,9 @@ class LockStep:
         self._answers = rospy.Subscriber(
             ANSWER_TOPIC, Answer, self._on_answer, queue_size=100, tcp_nodelay=True
         )
-        delay_service_replies(lambda number: None)
+        speed = f"{self._name}/set_parameters"
+        monitor = CallMonitor(self._synchronised_nodes, self._on_unsynchronised, harmless=(speed,))
+        delay_service_replies(lambda number: None, monitor)
 
     @property
     def members(self) -> FrozenSet[str]:
@@ -175,6 +177,10 @@ class LockStep:
             self.add_remark(f"{name} {why}")
             self._coordinator.remove_member(name)
         self._blocked_since = None
+
+    def _synchronised_nodes(self) -> FrozenSet[str]:
+        """Return the nodes whose calls are not noted, those that are about to be synchronised among them."""
+        return self.members | self._wait_for | {self._name} if self.members else frozenset()
 
     def _on_unsynchronised(self, text: str) -> None:
         self._calls.submit(lambda: self.add_remark(text))

@@ -1,0 +1,79 @@
+"""Service calls of nodes that are not synchronised are noted; those of synchronised nodes wait."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from planar_ros.lockstep import service_calls
+from planar_ros.lockstep.service_calls import CallMonitor, delay_service_replies
+
+MEMBERS = frozenset(("/sim_bridge", "/pick_objects"))
+
+
+@pytest.fixture
+def server(monkeypatch):
+    """rospy's server of services: a call is handled, its number waited for, and noted if it must be."""
+    seen = SimpleNamespace(handled=[], waited=[], noted=[], members=MEMBERS)
+
+    class Server:
+        def __init__(self, name):
+            self.resolved_name = name
+
+        def _handle_request(self, transport, request):
+            seen.handled.append(self.resolved_name)
+
+    def call(service, caller, **header):
+        request = SimpleNamespace(_connection_header={"callerid": caller, **header})
+        Server(service)._handle_request(None, request)
+
+    monkeypatch.setattr(service_calls, "ServiceImpl", Server)
+    monitor = CallMonitor(lambda: seen.members, seen.noted.append, harmless=("/sim_bridge/set_parameters",))
+    delay_service_replies(seen.waited.append, monitor)
+    seen.call = call
+    return seen
+
+
+def test_a_call_of_a_node_that_is_not_synchronised_is_handled_and_noted(server):
+    server.call("/gazebo/reset_simulation", "/rosservice")
+    assert server.handled == ["/gazebo/reset_simulation"]
+    assert server.noted == [
+        "the service /gazebo/reset_simulation was called by /rosservice, which is not synchronised"
+    ]
+
+
+def test_a_service_is_noted_once(server):
+    for number in range(3):
+        server.call("/global_localization", f"/rosservice_{number}")
+    assert len(server.noted) == 1
+
+
+def test_a_call_of_a_synchronised_node_waits_and_is_not_noted(server):
+    server.call("/move_base/clear_costmaps", "/pick_objects", moment="7")
+    server.call("/move_base/clear_costmaps", "/pick_objects")
+    assert server.waited == [7]
+    assert server.noted == []
+
+
+def test_a_call_before_nodes_are_synchronised_is_not_noted(server):
+    server.members = frozenset()
+    server.call("/gazebo/spawn_sdf_model", "/spawn_model")
+    assert server.noted == []
+
+
+@pytest.mark.parametrize(
+    "service",
+    [
+        "/gazebo/get_physics_properties",
+        "/gazebo/pause_physics",
+        "/gazebo/unpause_physics",
+        "/move_base/make_plan",
+        "/move_base/NavfnROS/make_plan",
+        "/static_map",
+        "/amcl/set_logger_level",
+        "/tf2_frames",
+        "/sim_bridge/set_parameters",
+    ],
+)
+def test_a_call_that_changes_nothing_in_the_simulation_is_not_noted(server, service):
+    server.call(service, "/rqt")
+    assert server.noted == []
