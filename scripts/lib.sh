@@ -18,7 +18,6 @@ readonly environments=(gymnasium train) # those of home_service_gym
 step_pid=
 clock_pid=
 aside_pid=
-undo=: # of what must not be left half done
 
 print_line() { printf '%s\n' "$*"; }
 
@@ -53,7 +52,7 @@ interrupted() { # EXIT_CODE: ends the step that is running, then this script
 trap 'interrupted 130' INT
 trap 'interrupted 143' TERM
 trap 'interrupted 129' HUP
-trap 'end_group "$aside_pid"; "$undo"' EXIT
+trap 'end_group "$aside_pid"' EXIT
 
 as_root_if_needed() { "$@" 2>/dev/null || sudo -n "$@" 2>/dev/null || true; }
 
@@ -73,7 +72,7 @@ step() { # TITLE LOG COMMAND...: runs the command, shows how long it takes, retu
     print_line "$title ..."
     # Own process groups, and waiting with `wait`, let a signal sent to this shell alone end the step at once.
     set -m
-    (while sleep 15; do print_line "  ... $((SECONDS - started)) s"; done) &
+    show_time "$started" "$BASHPID" 8<&- 9<&- &
     clock_pid=$!
     "$@" >>"$log" 2>&1 </dev/null &
     step_pid=$!
@@ -84,6 +83,13 @@ step() { # TITLE LOG COMMAND...: runs the command, shows how long it takes, retu
     clock_pid=
     ((status)) || print_line "  done in $((SECONDS - started)) s"
     return "$status"
+}
+
+show_time() { # STARTED PARENT: until the parent has ended, be it killed
+    local seconds=0 parent
+    while sleep 1 && read -r _ _ _ parent _ <"/proc/$BASHPID/stat" && ((parent == $2)); do
+        ((++seconds % 15)) || print_line "  ... $((SECONDS - $1)) s"
+    done
 }
 
 start_aside() { # LOG COMMAND...: goes on beside the next steps, until finish_aside
@@ -103,9 +109,27 @@ finish_aside() { # TITLE: waits, and returns the exit code of what was started a
 
 enter_workspace() {
     check_temporary_files
+    hold_build
     set +u
-    ros_environment "$root"
+    ros_environment "$root" "$HOME_SERVICE_BUILD"
     set -u
+}
+
+# What is run keeps the build that it starts with, by a lock that it inherits; the scripts that it starts use the same one.
+hold_build() { # sets HOME_SERVICE_BUILD
+    if is_inside && lock_build "$HOME_SERVICE_BUILD"; then return; fi
+    for _ in {1..100}; do # another set-up may have finished meanwhile
+        HOME_SERVICE_BUILD=$(readlink -f "$root/devel")
+        if lock_build "$HOME_SERVICE_BUILD" && [[ $(readlink -f "$root/devel") == "$HOME_SERVICE_BUILD" ]]; then break; fi
+        sleep 0.05
+    done
+    export HOME_SERVICE_BUILD
+}
+
+lock_build() { exec 8<"${1%/devel}" && flock --shared --nonblock 8; } # DEVEL
+
+is_inside() { # was this started by something that runs in this workspace?
+    [[ ${HOME_SERVICE_BUILD:-} == "$root"/* && -e $HOME_SERVICE_BUILD/.set-up ]]
 }
 
 check_temporary_files() { # the environment and the nodes need some

@@ -27,8 +27,10 @@ scripts=$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")
 . "$scripts/setup/workspace.sh"
 
 readonly logs=$root/logs/setup
+readonly development=(dev cockpit laboratory gymnasium fuzzing) # the extras that all tests need
 packages_only=
 failure=
+outdated= # what is kept although the sources have changed
 retry= # also what has failed before, of the same sources
 
 set_up() { # EXTRA...: brings the workspace up to date; extras: dev, projects, opencv, rviz, cockpit, laboratory, gymnasium, fuzzing
@@ -37,6 +39,7 @@ set_up() { # EXTRA...: brings the workspace up to date; extras: dev, projects, o
         check_place
         mkdir -p "$logs"
         take_turns
+        restore_venv
         look_for_missing "$@"
         announce
         start_python
@@ -46,6 +49,8 @@ set_up() { # EXTRA...: brings the workspace up to date; extras: dev, projects, o
         exec 9<&- # what is run now must not keep others from setting up
     fi
     if [[ -n $failure ]]; then warn_of_failure; else take_in_all; fi
+    [[ -z $outdated ]] ||
+        printf 'warning: what runs in this workspace keeps its %s; new ones come with the next start\n' "$outdated" >&2
 }
 
 look_for_missing() { # EXTRA...: each of the variables is empty when nothing of its kind is missing
@@ -59,11 +64,18 @@ look_for_missing() { # EXTRA...: each of the variables is empty when nothing of 
     failure=
     [[ -n $retry ]] || failure=$(last_failure)
     build=
-    [[ -n $failure ]] || has_stamp "$root/build/.set-up" "$inputs" || build=workspace
+    [[ -n $failure ]] || has_stamp "$root/devel/.set-up" "$inputs" || build=workspace
+    outdated=
+    [[ -n $retry ]] || ! is_inside || keep_what_runs
     kernels=
     [[ -z $build ]] && has_stamp "$root/build/.kernels" "$(kernel_inputs)" || kernels=kernels
     packages=$(cd "$root/scripts" && missing_packages "$@" ${build:+build})
     [[ -z $packages_only ]] || build='' kernels=''
+}
+
+keep_what_runs() { # what was started by something that runs here uses what that does
+    [[ -z $build ]] || outdated=build build=''
+    ! replaces_packages || outdated=${outdated:+$outdated and }"Python packages" requirements=''
 }
 
 has_stamp() { [[ -e $1 && $(<"$1") == "$2" ]]; } # FILE TEXT
@@ -109,7 +121,12 @@ install_python() { # the exit code states which part failed
 }
 
 finish_python() {
-    [[ -n $aside_pid ]] || return 0
+    [[ -z $aside_pid ]] || end_python
+    shield_rospy
+    [[ -z $kernels ]] || kernel_inputs >"$root/build/.kernels"
+}
+
+end_python() {
     local title="Python packages" log=$logs/python.log status=0
     [[ -z $kernels ]] || title=${requirements:+$title, }"Numerical kernels"
     finish_aside "$title" || status=$?
@@ -121,8 +138,6 @@ finish_python() {
             ;;
         *) give_up "pip failed" "$log" ;;
     esac
-    [[ -z $requirements ]] || shield_rospy
-    [[ -z $kernels ]] || kernel_inputs >"$root/build/.kernels"
 }
 
 warn_of_failure() {
@@ -135,7 +150,7 @@ main() {
     retry=yes
     for option; do
         case $option in
-            --dev) extras+=(dev cockpit laboratory gymnasium fuzzing) ;;
+            --dev) extras+=("${development[@]}") ;;
             --projects) extras+=(projects) ;;
             --rviz) extras+=(rviz) ;;
             --web) extras+=(cockpit) ;;

@@ -1,5 +1,10 @@
 # shellcheck shell=bash disable=SC2154,SC2034 # variables of lib.sh and setup.sh
 # The Python packages in .venv: fetched beside Debian's, each as a wheel, then installed without network.
+# What an extra adds is installed into .venv, where it changes nothing else. Other versions of what is there are installed
+# into .venv.new, a copy that then takes the place of .venv.
+
+venv=$root/.venv # what is installed into
+patience=60      # seconds until what runs has to end before packages change
 
 missing_requirements() { # FILE...: those that .venv does not hold
     local file
@@ -9,7 +14,7 @@ missing_requirements() { # FILE...: those that .venv does not hold
 }
 
 requirement_stamp() { # FILE
-    print_line "$(sha256sum "$1") $root $(readlink /usr/bin/python3)"
+    print_line "$(sha256sum "$1") $(maker)"
 }
 
 requirement_names() {
@@ -21,40 +26,101 @@ requirement_names() {
 make_venv() {
     check_python
     : >"$logs/python.log"
-    if is_venv_whole; then
-        mv "$root/.venv/.set-up" "$root/.venv/.set-up.before" # other extras stay installed
-        return
+    if replaces_packages; then
+        wait_until_unused
+        venv=$root/.venv.new
+        if is_venv_whole "$root/.venv"; then copy_venv; fi
     fi
-    step "Creating .venv" "$logs/python.log" \
-        /usr/bin/python3 -m venv --clear --system-site-packages "$root/.venv" ||
+    is_venv_whole "$venv" || has_stamp "$venv/.made" "$(maker)" ||
+        step "Creating .venv" "$logs/python.log" create_venv ||
         give_up "the virtual environment could not be created" "$logs/python.log"
 }
 
-is_venv_whole() { # made here, with this Python, and never left half installed
-    grep -qs " $root $(readlink /usr/bin/python3)\$" "$root/.venv/.set-up"
+is_venv_whole() { # VENV: made here, with this Python, and never left half installed
+    grep -qs " $(maker)\$" "$1/.set-up"
 }
 
-fetch_requirements() { # those that are missing, into .venv/wheels
+maker() { print_line "$root $(readlink /usr/bin/python3)"; }
+
+create_venv() {
+    /usr/bin/python3 -m venv --clear --system-site-packages "$venv" && maker >"$venv/.made"
+}
+
+copy_venv() { # pip replaces files and never writes into one, so that links are enough
+    rm -rf "$venv"
+    cp -al "$root/.venv" "$venv" 2>/dev/null || { rm -rf "$venv" && cp -a "$root/.venv" "$venv"; }
+}
+
+use_venv() { # the copy in place of .venv; programs in it name the folder that they are in
+    [[ $venv != "$root/.venv" ]] || return 0
+    { grep -lIrF "$venv" "$venv/bin" "$venv/pyvenv.cfg" || true; } | xargs -r sed -i "s|$venv|$root/.venv|g"
+    exchange "$root/.venv" "$venv"
+    rm -rf "$venv"
+    venv=$root/.venv
+}
+
+restore_venv() { # after a set-up that was cut short while it exchanged them, or one of version 1.0.0
+    local here=$root/.venv
+    [[ -e $here || ! -e $here.old ]] || mv -T "$here.old" "$here"
+    [[ -e $here/.set-up || ! -e $here/.set-up.before ]] || mv "$here/.set-up.before" "$here/.set-up"
+}
+
+replaces_packages() { # is anything missing that is there in another version?
+    local file
+    for file in $requirements; do ! grep -qs "  $file " "$root/.venv/.set-up" || return 0; done
+    return 1
+}
+
+wait_until_unused() {
+    ! is_in_use || step "Waiting for what runs in this workspace to end, as its Python packages change" /dev/null \
+        await_end || fail "the Python packages have changed: end what runs in this workspace, then start again"
+}
+
+await_end() {
+    local end=$((SECONDS + patience))
+    while is_in_use; do
+        ((SECONDS < end)) || return 1
+        sleep 0.2
+    done
+}
+
+is_in_use() { # whatever runs holds a lock on its build
+    local space
+    for space in "$root"/build/[0-9]*/; do
+        [[ ! -d $space ]] || flock --nonblock "$space" true || return 0
+    done
+    return 1
+}
+
+fetch_requirements() { # those that are missing
     [[ -z $(missing_wheel) ]] || build_wheel || return
     local files
     mapfile -t files < <(options_of_missing)
     # Packages without wheels are built in pip's isolated environment: Debian 11 lacks wheel and has a patched distutils.
-    SETUPTOOLS_USE_DISTUTILS=stdlib pip wheel --use-pep517 --no-deps --wheel-dir "$root/.venv/wheels" \
+    SETUPTOOLS_USE_DISTUTILS=stdlib pip wheel --use-pep517 --no-deps --wheel-dir "$venv/wheels" \
         --find-links "$wheels" "${files[@]}"
 }
 
 install_requirements() {
-    local stamp=$root/.venv/.set-up files file
+    local stamp=$venv/.set-up files file
     mapfile -t files < <(options_of_missing)
-    pip install --no-index --find-links "$root/.venv/wheels" "${files[@]}" || return
-    rm -rf "$root/.venv/wheels"
+    remove_half_installed
+    pip install --no-index --find-links "$venv/wheels" "${files[@]}" || return
+    rm -rf "$venv/wheels"
     (
         cd "$root/scripts" || exit
-        stamps_of_others "$stamp.before"
+        stamps_of_others "$stamp"
         for file in "${requirement_files[@]}"; do requirement_stamp "$file"; done
     ) | sort -u >"$stamp.new"
     mv "$stamp.new" "$stamp"
-    rm -f "$stamp.before"
+    use_venv
+}
+
+remove_half_installed() { # pip takes a package for whole before it is; the file INSTALLER comes after all others
+    local package
+    for package in "$venv"/lib/python3.*/site-packages/*.dist-info; do
+        [[ ! -d $package || -e $package/INSTALLER ]] || rm -rf "$package"
+    done
 }
 
 stamps_of_others() { # FILE: of requirements that are not set up now, which stay installed
@@ -69,7 +135,8 @@ shield_rospy() { # that of Debian 11 calls Thread.isAlive, which its Python no l
     grep -qs 'isAlive()' "$rospy_of_system/core.py" || return 0
     local site
     site=$(echo "$root"/.venv/lib/python3.*/site-packages)
-    print_line 'import threading; threading.Thread.isAlive = threading.Thread.is_alive' >"$site/rospy_shield.pth"
+    [[ ! -d $site ]] ||
+        print_line 'import threading; threading.Thread.isAlive = threading.Thread.is_alive' >"$site/rospy_shield.pth"
 }
 
 options_of_missing() {
@@ -78,7 +145,7 @@ options_of_missing() {
     printf '%s\n' "${names[@]/#/--requirement=$root/scripts/}"
 }
 
-pip() { pip_of "$root/.venv" "$@"; }
+pip() { pip_of "$venv" "$@"; }
 
 pip_of() { # VENV COMMAND ARGUMENT...: what Debian has does not count, it comes and goes while apt-get is at work
     env -u PYTHONHOME -u PYTHONPATH "$1/bin/python3" -c '

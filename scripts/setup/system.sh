@@ -53,6 +53,14 @@ take_turns() { # one set-up at a time; the lock ends with the set-up, or with th
     flock --nonblock 9 || step "Waiting for another set-up of this workspace" /dev/null flock 9
 }
 
+exchange() { # PATH OTHER: at once or, where the file system cannot do that, in three steps
+    local code='import ctypes, os, sys
+here, exchange = -100, 2 # AT_FDCWD, RENAME_EXCHANGE
+path, other = map(os.fsencode, sys.argv[1:])
+sys.exit(ctypes.CDLL(None).renameat2(here, path, here, other, exchange) != 0)'
+    /usr/bin/python3 -c "$code" "$@" 2>/dev/null || { mv -T "$1" "$1.old" && mv -T "$2" "$1" && mv -T "$1.old" "$2"; }
+}
+
 give_up() { # SENTENCE LOG: ends with the reason that the log knows, else with the sentence and the log's end
     local reason
     reason=$(reason_in "$2")

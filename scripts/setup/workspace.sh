@@ -1,7 +1,6 @@
 # shellcheck shell=bash disable=SC2154,SC2034 # variables of lib.sh and setup.sh
-# The catkin build. The last one that went well comes back if the next one fails.
-
-readonly last=$root/build/.last # where the last good build waits while the next one is made
+# The catkin build. Each is made in another folder, build/1, build/2 ..., and the link devel leads to the last good one.
+# So a build that fails or is cut short changes nothing, and what runs keeps the build that it was started with.
 
 build_inputs() { # two lines: which packages there are, and what the build reads
     cd "$root" || return
@@ -13,29 +12,23 @@ build_inputs() { # two lines: which packages there are, and what the build reads
 }
 
 build_workspace() {
-    local log=$logs/build.log stamp=$root/build/.set-up
+    local log=$logs/build.log space
     inputs=$(build_inputs) # what has just been installed is among them
     (cd "$root" && check_names)
     : >"$log"
-    restore_last_build
-    undo=restore_last_build
-    clear_build
-    # A build that was made elsewhere, or contains removed packages, is made again.
-    if [[ $(head -n 1 "$last/build/.set-up" 2>/dev/null) == "${inputs%%$'\n'*}" ]]; then
-        cp -a "$last/build" "$last/devel" "$root"
-        rm "$stamp"
-    fi
-    if step "Building the workspace" "$log" catkin_build; then
-        print_line "$inputs" >"$stamp"
-        rm -rf "$last"
+    choose_space
+    if step "Building the workspace" "$log" catkin_build "$space"; then
+        print_line "$inputs" >"$space/devel/.set-up"
+        clear_projects
+        take_into_use "$space"
         take_in_all
+        remove_build_in_place
     else
-        restore_last_build
         leave_out_invalid
         report_failure "$log"
-        [[ -e $stamp ]] || fail "$failure"
+        [[ -e $root/devel/.set-up ]] || fail "$failure"
     fi
-    undo=:
+    exec 8<&-
 }
 
 report_failure() { # LOG: in $failure; one that the sources are at fault for is kept, so that they are not built again
@@ -49,36 +42,51 @@ report_failure() { # LOG: in $failure; one that the sources are at fault for is 
 }
 
 last_failure() { # the sentence, if just these sources have failed to build while an earlier build is in use
-    [[ -e $root/build/.set-up && -e $root/build/.failed ]] || return 0
+    [[ -e $root/devel/.set-up && -e $root/build/.failed ]] || return 0
     [[ $(head -n 2 "$root/build/.failed") != "$inputs" ]] || tail -n +3 "$root/build/.failed"
 }
 
-# -- the last good build -------------------------------------------------------------------------------
+# -- the folders of builds -----------------------------------------------------------------------------
 
-clear_build() { # but for other people's projects that run at this moment: each holds the lock in its folder
+clear_projects() { # of other people, built on top of the last build; one that runs at this moment holds the lock in its folder
     local folder
     for folder in "$root"/build/projects/*/; do
         [[ ! -d $folder ]] || flock --nonblock "$folder/lock" rm -rf "$folder" ||
             print_line "left alone, in use: $folder"
     done
-    mkdir -p "$last/build"
-    parts_of_build "$root/build" -exec mv -t "$last/build" {} +
-    [[ ! -d $root/devel ]] || mv "$root/devel" "$last"
-    : >"$last/whole"
 }
 
-restore_last_build() { # after one that failed or was cut short
-    [[ -d $last ]] || return 0
-    if [[ -e $last/whole ]]; then
-        parts_of_build "$root/build" -exec rm -rf {} +
-        rm -rf "$root/devel"
-        rm -f "$last/whole" # from here on nothing else is the build
+choose_space() { # sets space: the first folder that nothing runs from; it is locked while it is built in
+    local number=1
+    until space=$root/build/$number && is_free "$space"; do ((number += 1)); done
+    # A build that was made elsewhere, contains removed packages or was cut short is made again.
+    if [[ $(head -n 1 "$space/devel/.set-up" 2>/dev/null) == "${inputs%%$'\n'*}" ]]; then
+        rm "$space/devel/.set-up"
+    else
+        rm -rf "$space/build" "$space/devel"
     fi
-    if [[ -e $last/build/.set-up ]]; then
-        [[ ! -d $last/devel ]] || mv "$last/devel" "$root"
-        parts_of_build "$last/build" -exec mv -t "$root/build" {} +
+}
+
+is_free() { # SPACE
+    [[ $(readlink -f "$root/devel") != "$1/devel" ]] && mkdir -p "$1" && exec 8<"$1" && flock --nonblock 8
+}
+
+take_into_use() { # SPACE
+    rm -rf "$root/devel.new"
+    ln -s "build/${1##*/}/devel" "$root/devel.new"
+    if [[ -d $root/devel && ! -L $root/devel ]]; then # built by version 1.0.0
+        exchange "$root/devel" "$root/devel.new"
+        rm -rf "$root/devel.new"
+    else
+        mv -T "$root/devel.new" "$root/devel"
     fi
-    rm -rf "$last"
+}
+
+remove_build_in_place() { # of version 1.0.0, in build/ itself
+    [[ -e $root/build/CMakeCache.txt ]] || return 0
+    find "$root/build" -mindepth 1 -maxdepth 1 ! -name '[0-9]*' ! -name projects ! -name .kernels ! -name CMakeCache.txt \
+        -exec rm -rf {} +
+    rm "$root/build/CMakeCache.txt"
 }
 
 leave_out_invalid() { # ROS's tools read each package in the source space, and end at the first that is not valid
@@ -110,13 +118,9 @@ write_source_space() { # FOLDERS, as catkin has it: separated by semicolons
     printf %s "$1" >"$root/devel/.catkin.new" && mv "$root/devel/.catkin.new" "$root/devel/.catkin"
 }
 
-parts_of_build() { # FOLDER ACTION...: what catkin made in it
-    find "$1" -mindepth 1 -maxdepth 1 ! -name projects ! -name .last ! -name .failed "${@:2}"
-}
-
 # -- catkin --------------------------------------------------------------------------------------------
 
-catkin_build() {
+catkin_build() { # SPACE
     # The workspace stands alone: another one that is sourced here must not become part of it.
     unset CMAKE_PREFIX_PATH LD_LIBRARY_PATH PKG_CONFIG_PATH PYTHONHOME PYTHONPATH "${!ROS_@}"
     if [[ -d $noetic ]]; then
@@ -128,14 +132,22 @@ catkin_build() {
     # pip is at work in .venv meanwhile: a package that is there by half must not come before Debian's whole one.
     export PYTHONPATH=${PYTHONPATH:+$PYTHONPATH:}/usr/lib/python3/dist-packages
     cd "$root" || return
-    rm -f src/compat/*/CATKIN_IGNORE src/tutorials/*/CATKIN_IGNORE
-    ignored_packages | xargs -I{} touch {}/CATKIN_IGNORE
+    mark_ignored_packages
     export ROS_LANG_DISABLE=genlisp:geneus:gennodejs # bindings of the messages that nobody asks for
     # Without -j it would pass -l as well, and on a loaded machine make would wait for the load to sink.
     # The Python of nodes goes by three names: catkin of Debian 13 knows the second one only, pluginlib the third.
     # A message that is new in a folder is seen by cmake alone.
     catkin_make --force-cmake -j"$(nproc)" -D{PYTHON,Python,Python3}_EXECUTABLE="$root/.venv/bin/python3" \
-        -DCATKIN_ENABLE_TESTING=OFF
+        -DCATKIN_ENABLE_TESTING=OFF --build "$1/build" -DCATKIN_DEVEL_PREFIX="$1/devel"
+}
+
+mark_ignored_packages() { # programs may look for packages meanwhile: marks that stay are not touched
+    local ignored folder
+    ignored=$(ignored_packages)
+    for folder in src/compat/*/ src/tutorials/*/; do
+        grep -qxF "${folder%/}" <<<"$ignored" || rm -f "$folder/CATKIN_IGNORE"
+    done
+    [[ -z $ignored ]] || xargs -I{} touch {}/CATKIN_IGNORE <<<"$ignored"
 }
 
 # What is in these folders gives way to packages of the same name that the system or the user has.

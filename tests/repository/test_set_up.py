@@ -13,19 +13,19 @@ import pytest
 SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 
 
-def test_clearing_the_build_leaves_a_project_that_runs_alone(tmp_path):
+def test_clearing_projects_of_the_last_build_leaves_one_that_runs_alone(tmp_path):
     shutil.copytree(SCRIPTS, tmp_path / "scripts")
-    kept, old, others = (tmp_path / "build" / name for name in ("projects/a", "projects/b", "planar"))
-    for folder in (kept, old, others, tmp_path / "devel"):
+    kept, old = (tmp_path / "build/projects" / name for name in "ab")
+    for folder in (kept, old):
         folder.mkdir(parents=True)
         (folder / "file").touch()
     with (kept / "lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         output = subprocess.check_output(
-            ["bash", "-c", '. "$1"; clear_build', "bash", str(tmp_path / "scripts/setup.sh")], text=True
+            ["bash", "-c", '. "$1"; clear_projects', "bash", str(tmp_path / "scripts/setup.sh")], text=True
         )
     assert (kept / "file").exists()
-    assert not old.exists() and not others.exists() and not (tmp_path / "devel").exists()
+    assert not old.exists()
     assert f"in use: {kept}" in output
 
 
@@ -61,6 +61,7 @@ def in_workspace(folder, commands):
         ["bash", "-c", f'. "$1"; cd "$root"; {commands}', "bash", str(folder / "scripts/setup.sh")],
         capture_output=True,
         text=True,
+        timeout=60,
     )
 
 
@@ -79,7 +80,10 @@ def set_up_once(folder):
     built = in_workspace(
         folder,
         """
-        catkin_build() { mkdir -p build devel; echo good | tee devel/setup.bash >build/cache; }
+        catkin_build() {
+            mkdir -p "$1"/{build,devel}
+            echo good | tee "$1/devel/setup.bash" >"$1/build/cache"
+        }
         retry=''; look_for_missing; build_workspace
         """,
     )
@@ -88,7 +92,7 @@ def set_up_once(folder):
 
 FAILING = """
     catkin_build() {
-        echo half >devel/setup.bash
+        mkdir -p "$1/devel"; echo half >"$1/devel/setup.bash"
         printf '%s\\n' 'CMake Warning at /usr/share/genmsg/cmake/genmsg-extras.cmake:49 (message):' \\
             '  Unknown message generator' \\
             'Call Stack (most recent call first):' '  other/CMakeLists.txt:5 (find_package)' \\
@@ -116,7 +120,7 @@ def test_a_package_that_does_not_build_leaves_the_last_good_build_in_use(tmp_pat
             "(./scripts/setup.sh --projects installs what most packages in C++ need)"
         ) in result.stderr
         assert (tmp_path / "devel/setup.bash").read_text() == "good\n"
-        assert (tmp_path / "build/cache").read_text() == "good\n"
+        assert (tmp_path / "devel/../build/cache").read_text() == "good\n"
     assert "Building" not in result.stdout
     shutil.rmtree(tmp_path / "src/mine")
     result = in_workspace(tmp_path, FAILING + "set_up; echo used")
@@ -129,7 +133,7 @@ def test_ros_does_not_meet_an_invalid_package_while_the_last_build_is_in_use(tmp
     write_package(tmp_path / "src/good/lent/rviz", "rviz", VALID)  # catkin does not look into packages
     write_package(tmp_path / "src/ignored", "ignored", VALID)
     (tmp_path / "src/ignored/CATKIN_IGNORE").touch()
-    well = "catkin_build() { mkdir -p build devel; printf %s $root/src >devel/.catkin; }"
+    well = "catkin_build() { mkdir -p $1/devel; printf %s $root/src >$1/devel/.catkin; }"
     in_workspace(tmp_path, f"{well}; retry=''; look_for_missing; build_workspace")
     write_package(tmp_path / "src/nested/mine", "mine", VALID.replace("a@b.org", "nobody"))
     result = in_workspace(tmp_path, FAILING + "set_up; echo used")
@@ -144,7 +148,7 @@ def test_a_package_xml_that_is_no_text_does_not_affect_other_packages(tmp_path):
     set_up_once(tmp_path)
     write_package(tmp_path / "src/good", "good", VALID)
     in_workspace(
-        tmp_path, "catkin_build() { mkdir -p build devel; }; retry=''; look_for_missing; build_workspace"
+        tmp_path, "catkin_build() { mkdir -p $1/devel; }; retry=''; look_for_missing; build_workspace"
     )
     (tmp_path / "devel/.catkin").write_text(f"{tmp_path}/src")
     write_package(tmp_path / "src/mine", "mine", VALID)
@@ -165,30 +169,68 @@ def test_the_set_up_itself_fails_on_a_package_that_does_not_build(tmp_path):
         assert "error: the package 'mine' does not build" in result.stderr
 
 
-def test_a_build_that_was_cut_short_is_undone_by_the_next(tmp_path):
+BUILD_AGAIN = "missing_packages() { :; }; retry=''; look_for_missing; build_workspace"
+
+
+def test_a_build_that_was_cut_short_is_made_again_beside_the_last_good_one(tmp_path):
     set_up_once(tmp_path)
-    in_workspace(tmp_path, "clear_build; mkdir devel; touch devel/half")
-    assert not (tmp_path / "devel/setup.bash").exists()
-    in_workspace(tmp_path, "restore_last_build")
+    cut = 'catkin_build() { mkdir -p "$1/devel"; touch "$1/devel/half"; kill -KILL $$; }; '
+    in_workspace(tmp_path, cut + BUILD_AGAIN)
+    assert (tmp_path / "build/2/devel/half").exists()
     assert (tmp_path / "devel/setup.bash").read_text() == "good\n"
-    assert not (tmp_path / "devel/half").exists() and not (tmp_path / "build/.last").exists()
+    whole = 'catkin_build() { mkdir -p "$1/devel"; echo new >"$1/devel/setup.bash"; }; '
+    in_workspace(tmp_path, whole + BUILD_AGAIN)
+    assert (tmp_path / "devel/setup.bash").read_text() == "new\n"
+    assert not (tmp_path / "devel/half").exists()
 
 
-def test_a_build_whose_restoring_was_cut_short_is_still_there(tmp_path):
+def test_a_script_keeps_the_build_that_it_started_with_and_so_do_those_that_it_starts(tmp_path):
     set_up_once(tmp_path)
-    in_workspace(tmp_path, "clear_build")
-    in_workspace(tmp_path, 'mv() { command mv "$@"; kill -KILL $$; }; restore_last_build')
-    in_workspace(tmp_path, "restore_last_build")
+    outer = in_workspace(
+        tmp_path,
+        """
+        build() {
+            echo "export ROUND=$1" >round
+            bash -c '. "$1"
+                catkin_build() { mkdir -p "$1/devel"; cp round "$1/devel/setup.bash"; }
+                missing_packages() { :; }
+                retry=
+                look_for_missing
+                build_workspace' bash "$root/scripts/setup.sh" 8<&-
+        }
+        inner() { bash -c '. "$1"; enter_workspace; echo $ROUND' bash "$root/scripts/setup.sh"; }
+        build 1 >&2
+        enter_workspace
+        for round in 2 3 4; do
+            env -u HOME_SERVICE_BUILD bash -c "$(declare -f build); root=$root; build $round" >&2
+        done
+        cat "$HOME_SERVICE_BUILD/setup.bash" devel/setup.bash
+        inner
+        """,
+    )
+    assert outer.stdout.split("\n") == ["export ROUND=1", "export ROUND=4", "1", ""], outer.stderr
+    assert sorted(path.name for path in (tmp_path / "build").glob("[0-9]*")) == ["1", "2", "3"]
+
+
+def test_what_a_running_script_starts_does_not_build_although_sources_have_changed(tmp_path):
+    set_up_once(tmp_path)
+    in_workspace(tmp_path, FAILING + "catkin_build() { false; }; main")
+    write_package(tmp_path / "src/mine", "mine")
+    result = in_workspace(tmp_path, FAILING + ": >devel/setup.bash; enter_workspace; set_up; echo used")
+    assert result.stdout.endswith("used\n") and "Building" not in result.stdout
+    assert result.stderr == (
+        "warning: what runs in this workspace keeps its build; new ones come with the next start\n"
+    )
+
+
+def test_a_build_of_version_1_0_0_gives_way_to_the_next(tmp_path):
+    for old in ("devel/setup.bash", "build/CMakeCache.txt", "build/planar/Makefile", "build/.set-up"):
+        (tmp_path / old).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / old).touch()
+    set_up_once(tmp_path)
+    assert (tmp_path / "devel").is_symlink()
     assert (tmp_path / "devel/setup.bash").read_text() == "good\n"
-    assert (tmp_path / "build/cache").exists() and (tmp_path / "build/.set-up").exists()
-
-
-def test_a_build_that_was_cut_short_while_it_was_set_aside_is_whole_again(tmp_path):
-    set_up_once(tmp_path)
-    in_workspace(tmp_path, 'mkdir -p "$last/build"; mv build/cache build/.set-up "$last/build"')
-    in_workspace(tmp_path, "restore_last_build")
-    assert (tmp_path / "devel/setup.bash").exists()
-    assert (tmp_path / "build/cache").exists() and (tmp_path / "build/.set-up").exists()
+    assert sorted(path.name for path in (tmp_path / "build").iterdir()) == ["1"]
 
 
 def test_a_package_of_the_user_takes_the_place_of_a_tutorial(tmp_path):
@@ -231,7 +273,7 @@ def test_what_the_first_set_up_installs_does_not_make_the_second_start_build_aga
         missing_packages() { [[ -e python ]] || echo python3; }
         check_place() { :; }
         install_debian() { echo 3.13 >python; }
-        catkin_build() { mkdir -p build devel; }
+        catkin_build() { mkdir -p $1/devel; }
         set_up
         look_for_missing
         echo "left: $build"
@@ -248,7 +290,12 @@ def test_what_one_extra_installs_another_does_not_install_again(tmp_path):
         options_of_missing() { :; }
         is_venv_whole() { [[ -e $root/.venv/.set-up ]]; }
         mkdir -p .venv; touch .venv/.set-up
-        install() { requirement_files=(requirements.txt "$@"); make_venv; install_requirements; }
+        install() {
+            requirement_files=(requirements.txt "$@")
+            requirements=$(cd scripts && missing_requirements "${requirement_files[@]}")
+            make_venv
+            install_requirements
+        }
         install requirements-docs.txt
         install requirements-cockpit.txt
         cd scripts
@@ -271,13 +318,13 @@ BESIDE = """
     install_requirements() { touch installed; }
     warm_kernels() { touch compiled; }
     shield_rospy() { :; }
-    catkin_build() { mkdir -p build devel; touch building; }
+    catkin_build() { mkdir -p $1/devel; touch building; }
 """
 
 
 def test_python_packages_and_kernels_are_made_beside_the_build(tmp_path):
     result = in_workspace(
-        tmp_path, BESIDE + "mkdir src; set_up; ls installed compiled build/.set-up build/.kernels"
+        tmp_path, BESIDE + "mkdir src; set_up; ls installed compiled devel/.set-up build/.kernels"
     )
     assert result.returncode == 0, result.stderr
 
@@ -294,7 +341,7 @@ def test_a_failure_beside_the_build_is_reported_after_it(tmp_path, step, code, s
     result = in_workspace(tmp_path, BESIDE + f"mkdir src; {step}() {{ false; }}; set_up")
     assert result.returncode == code
     assert sentence in result.stdout + result.stderr
-    assert (tmp_path / "build/.set-up").exists()
+    assert (tmp_path / "devel/.set-up").exists()
 
 
 def test_the_build_does_not_see_what_pip_has_installed_by_half(tmp_path):
@@ -306,7 +353,7 @@ def test_the_build_does_not_see_what_pip_has_installed_by_half(tmp_path):
         mkdir src
         sed -i s/false/true/ .venv/pyvenv.cfg
         catkin_make() { .venv/bin/python3 -c 'import catkin_pkg; print(catkin_pkg.__file__)'; }
-        catkin_build
+        catkin_build build/1
     """
     result = in_workspace(tmp_path, generating)
     assert result.returncode == 0, result.stderr

@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import List, Optional, Sequence
 
 from containment import ROOT, run_contained
-from outcome import Outcome, judge_unit_tests
+from outcome import Outcome, failure, judge_unit_tests
 from ros_test import RosTest, log_of
 
 from home_service.options import count
@@ -76,6 +76,14 @@ class RunSummary:
             self._failures.append(f"FAILED {name}: {outcome.reason or 'see the log'} -- {log}")
             if log.exists():  # a terminated test may have no log
                 print(indented_tail(log), flush=True)
+
+    def add_missing(self, name: str, need: str, is_skipped: bool) -> None:
+        """Skip a test file whose requirement is not installed, or count it as failed."""
+        reason = f"needs {need}; run ./scripts/setup.sh --dev"
+        if is_skipped:
+            print(f"skipped: {name} {reason}")
+        else:
+            self.add(name, failure(reason), 0.0)
 
     def conclude(self) -> int:
         for complaint in self._failures:
@@ -134,6 +142,9 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="test.sh", description="Runs the tests.")
     parser.add_argument("kind", nargs="?", choices=("unit", "ros", "all"), default="all")
     parser.add_argument("names", nargs="*", metavar="NAME", help="only test files whose paths contain it")
+    parser.add_argument(
+        "--quick", action="store_true", help="skip tests whose requirements are not installed"
+    )
     usual = min(len(os.sched_getaffinity(0)), MOST_JOBS)
     parser.add_argument("--jobs", type=count, default=usual, help="files of ROS tests at once (%(default)s)")
     options = parser.parse_intermixed_args()
@@ -160,7 +171,7 @@ def main() -> int:
     RosTests(folder, account).run([path for path in ros if lacks[path] is None], options.jobs)
     for path, need in lacks.items():
         if need is not None:
-            print(f"skipped: {path.relative_to(ROOT)} needs {need}; run ./scripts/setup.sh --dev")
+            account.add_missing(path.relative_to(ROOT).as_posix(), need, options.quick)
     return account.conclude()
 
 

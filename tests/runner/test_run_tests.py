@@ -109,6 +109,16 @@ def test_what_needs_something_that_is_not_there_is_left_out():
     assert missing_requirement(mission, lambda name: False) is None
 
 
+@pytest.mark.parametrize("is_quick", [False, True])
+def test_only_a_quick_run_leaves_out_what_needs_something_that_is_not_there(tmp_path, capsys, is_quick):
+    account = RunSummary(tmp_path)
+    account.add("tests/system/mission", Outcome(passed=1), 1.0)
+    account.add_missing("tests/cockpit/course.test", "viser", is_quick)
+    assert account.conclude() == (0 if is_quick else 1)
+    expected = "skipped: " if is_quick else "FAILED "
+    assert f"{expected}tests/cockpit/course.test" in capsys.readouterr().out
+
+
 def test_a_browser_alone_shows_no_page():
     page = ROOT / "tests/cockpit/course.test"
     assert missing_requirement(page, lambda name: name == "google-chrome") == "viser"

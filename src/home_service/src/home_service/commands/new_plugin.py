@@ -100,7 +100,7 @@ class NewPlugin:
             (folder / path).parent.mkdir(parents=True, exist_ok=True)
             write_atomically(folder / path, text.encode())
         print(f"{folder}/src/{self.name}/{self.kind}.py is where to start; then")
-        print(f"  ./scripts/test.sh unit {self.name}")
+        print(f"  ./scripts/test.sh --quick unit {self.name}")
         print(f"  {KINDS[self.kind].chosen.format(plugin=self._plugin)}")
         return 0
 
