@@ -11,7 +11,7 @@ from planar_ros.lockstep.transport import LockstepConnection
 @pytest.fixture
 def connected():
     """Connects a node to a topic; returns the remote socket and the connection."""
-    ends = []
+    ends, transports = [], []
 
     def connected(node, topic):
         near, far = socket.socketpair()
@@ -23,11 +23,15 @@ def connected():
             done=False,
             stat_bytes=0,
             stat_num_msg=0,
-            set_cleanup_callback=lambda callback: None,
             write_data=near.sendall,
         )
+        plain.set_cleanup_callback = lambda callback: setattr(plain, "closed", callback)
+        transports.append(plain)
         return far, LockstepConnection(plain, 50)
 
     yield connected
+    for transport in transports:  # ends the thread of its connection, for which Python would wait at exit
+        transport.done = True
+        transport.closed(transport)
     for end in ends:
         end.close()
