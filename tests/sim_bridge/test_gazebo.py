@@ -99,13 +99,13 @@ class TestGazebo(unittest.TestCase):
         wait_until("twice real time", lambda: abs(real_time_factor() - 2.0) < 0.4)
 
     def test_performance_metrics_state_the_real_time_factor(self):
-        scans = rospy.Subscriber("scan", LaserScan, lambda message: None)
+        subscriber = rospy.Subscriber("scan", LaserScan, lambda message: None)
         deadline, scans = time.monotonic() + 20.0, None
         while (scans is None or not scans.sim_update_rate) and time.monotonic() < deadline:
             metrics, scans = self.performance_and_scans()
         # Scans were sent for only a part of that period; the next one is whole.
         metrics, scans = self.performance_and_scans()
-        scans.unregister()
+        subscriber.unregister()
         self.assertGreater(metrics.real_time_factor, 0.0)
         self.assertAlmostEqual(scans.sim_update_rate, 10.0, delta=1.5)
 
@@ -180,7 +180,7 @@ class TestGazebo(unittest.TestCase):
             ("<robot name='r'/>", "its root is <robot>"),
             ("<sdf version='1.6'><model name='any'/></sdf>", "has no links"),
             (unicorn, "model://unicorn not found"),
-            (CENTIPEDE, "150 parts hang together, 128 is the most"),
+            (CENTIPEDE, "150 parts are connected by joints, at most 128 are supported"),
         ):
             answer = call("/gazebo/spawn_sdf_model", srv.SpawnModel, "crate", xml, "", Pose(), "")
             self.assertFalse(answer.success, xml)
