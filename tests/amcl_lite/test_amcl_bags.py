@@ -100,7 +100,7 @@ class AmclBagsTest(unittest.TestCase):
         command, tum = self.command("broken", broken)
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         self.assertEqual(done.returncode, 0, done.stderr)
-        warning = f"{broken}: skipping a scan (a scan with angle_increment nan means nothing)"
+        warning = f"{broken}: skipping a scan (a scan with invalid angle_increment nan)"
         self.assertIn(warning, done.stderr)
         self.assertEqual(len(tum.read_text().splitlines()), len(self.observations) - BROKEN)
 

@@ -92,7 +92,7 @@ class TestMoveBaseBadInput(MoveBaseTestCase):
             self.client.send_goal(MoveBaseGoal(pose_at(far, 0.0)))
             state, text = self.result_of()
             self.assertEqual(state, GoalStatus.ABORTED)
-            self.assertIn("means nothing", text)
+            self.assertIn("is out of range", text)
 
     def test_a_map_without_its_cells_is_ignored(self):
         maps = rospy.Publisher("map", OccupancyGrid, queue_size=1, latch=True)

@@ -148,7 +148,7 @@ class TestExit(unittest.TestCase):
             for parameters, reason in (
                 (["_world:=/no.world"], "/no.world: cannot be read (No such file or directory)"),
                 ([f"_world:={broken}"], "broken.world: not well-formed XML"),
-                ([world, "_robot:=turtelbot_lidar"], "did you mean turtlebot_lidar?"),
+                ([world, "_robot:=turtelbot_lidar"], 'did you mean "turtlebot_lidar"?'),
                 ([world, f"_robot:={still}"], "robot r has no drive"),
                 ([world, "_robot:=turtlebot_lidar", "_x:=-2.6", "_y:=4.99"], "inside wardrobe::link"),
                 ([world, "_seed:=-1"], "/sim_bridge/seed must be not negative, got -1"),

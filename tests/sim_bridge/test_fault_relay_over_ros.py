@@ -157,7 +157,7 @@ class TestFaultRelay(unittest.TestCase):
                 "kidnapped changes no scan, odometry or command, only wheels or the home",
             ),
             (("wheel_stuck", 0.0, 0.0), "wheel_stuck changes no scan, odometry or command"),
-            (("scan_nans", 0.0, 0.0), "there is no fault 'scan_nans', did you mean scan_nan?"),
+            (("scan_nans", 0.0, 0.0), "there is no fault 'scan_nans' (did you mean \"scan_nan\"?)"),
             (("scan_biased", 0.0, 99.0), "strength must be from"),
             (("scan_nan", -1.0, 0.0), "seconds must not be negative"),
         ):

@@ -64,7 +64,7 @@ class TestFaults(unittest.TestCase):
 
     def test_an_invalid_fault_is_refused_with_a_reason(self):
         for fault, reason in (
-            (("scan_nans", 0.0, 0.0), "there is no fault 'scan_nans', did you mean scan_nan?"),
+            (("scan_nans", 0.0, 0.0), "there is no fault 'scan_nans' (did you mean \"scan_nan\"?)"),
             (("scan_biased", 0.0, 99.0), "strength must be from"),
             (("scan_nan", -1.0, 0.0), "seconds must not be negative"),
             (("scan_nan", float("nan"), 0.0), "seconds must not be negative"),

@@ -134,7 +134,7 @@ class TestSimBridge(unittest.TestCase):
         for size, x, reason in (
             (1e30, 2.0, "a box needs positive lengths and a valid pose, got (1e+30,"),
             (math.nan, 2.0, "a box needs positive lengths and a valid pose, got (nan,"),
-            (0.4, 1e308, "a pose at 1e+308, 0, 0 means nothing"),
+            (0.4, 1e308, "a pose at 1e+308, 0, 0 is out of range"),
         ):
             box = Marker(type=Marker.CUBE, ns="giant")
             box.pose.position.x, box.pose.orientation.w = x, 1.0

@@ -50,7 +50,7 @@ class TestSpawnModel(unittest.TestCase):
         place = ("$", "-x", "-3.75", "-trimesh", "post.stl", "-y", "2")
         code, text = spawn_model("-sdf", "-stdin", "-model", "post", *place, stdin=POST)
         self.assertEqual(code, 0, text)
-        self.assertIn("goes on without what it does not know: $ -trimesh post.stl", text)
+        self.assertIn("ignoring unknown arguments: $ -trimesh post.stl", text)
         self.assertAlmostEqual(state("post").pose.position.x, -3.75)
         self.assertAlmostEqual(state("post").pose.position.y, 2.0)
 

@@ -152,7 +152,7 @@ class SlamConditionsTest(unittest.TestCase):
 
     def test_without_odometry_a_scan_with_nan_angles_is_skipped(self):
         lost = self.robot("lost")
-        words = "skipping a scan: a scan with angle_increment nan means nothing"
+        words = "skipping a scan: a scan with invalid angle_increment nan"
 
         def is_logged():
             scan = sweep(self.grid, lost.base_in_map, rospy.Time.now(), "laser")

@@ -158,7 +158,7 @@ class SlamContractTest(unittest.TestCase):
         scan = sweep(self.truth, circle(0.0), stamp, "laser")
         scan.angle_increment = math.nan
         self.scans.publish(scan)
-        words = "skipping a scan: a scan with angle_increment nan means nothing"
+        words = "skipping a scan: a scan with invalid angle_increment nan"
         self.wait_for(lambda: words in self.log_texts)
         before = self.newest_map().header.stamp
         steps = itertools.count(STEPS)

@@ -142,7 +142,7 @@ class SlamReplayTest(unittest.TestCase):
         break_scans(self.folder / "whole.bag", self.bag)
         code, text = self.replay()
         self.assertEqual(code, 0, text)
-        self.assertIn(f"{self.bag}: skipping a scan (a scan with angle_increment nan means nothing)", text)
+        self.assertIn(f"{self.bag}: skipping a scan (a scan with invalid angle_increment nan)", text)
         self.assertEqual(len(self.poses()), SCANS - BROKEN)
         self.assert_mapped()
 

@@ -183,7 +183,7 @@ def test_a_motion_that_could_not_be_followed_is_followed_at_the_next_scan(monkey
 @pytest.mark.parametrize(
     ("name", "reason"),
     [
-        ("no_such.module/Model", "there is no module no_such on Python's path"),
+        ("no_such.module/Model", "no module no_such on Python's path"),
         ("own.models/HasNoMethods", "is no sensor model: it has no log_likelihoods(poses, beams)"),
         ("Model", "sensor_plugin must be like my_package.my_module/MyModel, got 'Model'"),
     ],

@@ -82,4 +82,4 @@ def test_a_failed_check_is_reported(model, line, capsys):
 
 def test_what_is_neither_model_is_refused_with_what_it_lacks(capsys):
     assert run_checks("amcl_lite", KITS, ["own.faulty/Indefinite"]) == 2
-    assert "there is no Indefinite in" in capsys.readouterr().err
+    assert "no Indefinite in" in capsys.readouterr().err

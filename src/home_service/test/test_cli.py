@@ -72,7 +72,7 @@ def test_an_unknown_planner_is_named_and_nothing_is_started(command, tmp_path, m
     goals = ["--goals", "1 0 0"] if command == "test_navigation" else []
     assert main([command, *goals, "--planner", "MppiPlannerROS"]) == 2
     message = capsys.readouterr().err
-    assert "no local planner 'MppiPlannerROS'; did you mean move_base_lite/MppiPlannerROS?" in message
+    assert "no local planner 'MppiPlannerROS' (did you mean \"move_base_lite/MppiPlannerROS\"?)" in message
     assert list(tmp_path.iterdir()) == []
 
 

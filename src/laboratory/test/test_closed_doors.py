@@ -86,7 +86,7 @@ def test_closing_doors_of_a_world_without_doorways_is_an_error(tmp_path):
         ("many", ":5: happens.doors must be"),
         ("[{x: 1, y: 2}]", ":5: happens.doors[1].width is missing"),
         ("[{x: 1, y: 2, width: 0}]", ":5: happens.doors[1].width must be positive"),
-        ("[{x: 1, y: 2, width: 1, shut: 3}]", ":5: happens.doors[1].shut is not known; known are"),
+        ("[{x: 1, y: 2, width: 1, shut: 3}]", ':5: unknown key "happens.doors[1].shut" (known: '),
         ("[{x: 1, y: 2, width: 1, start: 5, end: 4}]", ":5: happens.doors[1].end must be after start (5)"),
         ("[{x: 1, y: 2, width: 1, start: -5}]", ":5: happens.doors[1].start must be not negative"),
     ],

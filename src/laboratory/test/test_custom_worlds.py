@@ -99,14 +99,14 @@ def test_its_fields_and_its_source_are_part_of_the_digest(read):
         (
             Corridor,
             "{wdith: 3.0}",
-            ":2: world.custom.world/Corridor.wdith is not known; did you mean width?",
+            ':2: unknown key "world.custom.world/Corridor.wdith" (did you mean "width"?)',
         ),
         (NotFrozen, "{}", "is not a world generator: it is not a frozen dataclass"),
         (WithoutArena, "{}", "is no world generator: it has no arena(seed)"),
         (
             "Nowhere",
             "{}",
-            ":2: world.custom.world/Nowhere cannot be used: custom.world/Nowhere: there is no Nowhere",
+            ":2: world.custom.world/Nowhere cannot be used: custom.world/Nowhere: no Nowhere",
         ),
     ],
 )

@@ -63,7 +63,7 @@ def test_routes_can_be_given(tmp_path):
     [
         ("-1", ":4: happens.people must be"),
         ("many", ":4: happens.people must be a table"),
-        ("{adlts: 1}", ":4: happens.people.adlts is not known; did you mean adults?"),
+        ("{adlts: 1}", ':4: unknown key "happens.people.adlts" (did you mean "adults"?)'),
         ("{groups: [1]}", ":4: happens.people.groups must be a list of group sizes"),
         ("{groups: 2}", ":4: happens.people.groups must be a list of group sizes"),
         ("[{goals: []}]", ":4: happens.people[1].goals must be a list of [x, y]"),

@@ -83,7 +83,7 @@ def test_a_requirement_is_parsed_and_checked_against_figures():
     assert not parse_requirement("success>0.98").is_met(figures)
     assert parse_requirement("collision <= 0").is_met(figures)
     assert not parse_requirement("localization < 1").is_met(figures)
-    with pytest.raises(SettingsError, match="sucess is not known; did you mean success"):
+    with pytest.raises(SettingsError, match='unknown figure "sucess" .did you mean "success"'):
         parse_requirement("sucess >= 0.9")
     with pytest.raises(SettingsError, match='must be like "success >= 0.99"'):
         parse_requirement("always")

@@ -41,16 +41,16 @@ def test_a_global_planner_is_selected_by_its_dotted_name():
 @pytest.mark.parametrize(
     "name, reason",
     [
-        ("no_such.module/Planner", "there is no module no_such on Python's path"),
-        ("planar.errors/Planner", "there is no Planner in "),
+        ("no_such.module/Planner", "no module no_such on Python's path"),
+        ("planar.errors/Planner", "no Planner in "),
         ("planar.errors/PlanarError", "is no local planner: it has no follow(context, plan, limits)"),
         ("custom_plugins.faulty/NoFollow", "it has no follow(context, plan, limits)"),
         ("custom_plugins.faulty/TooFewArguments", "it cannot be called as follow(context, plan, limits)"),
         (
             "custom_plugins.faulty/WrongSettings",
-            "its Settings are no dataclass derived from ControllerSettings",
+            "its Settings is not a dataclass derived from ControllerSettings",
         ),
-        ("custom_plugins.broken/Planner", "custom_plugins.broken fails with RuntimeError: no GPU"),
+        ("custom_plugins.broken/Planner", "importing custom_plugins.broken raised RuntimeError: no GPU"),
     ],
 )
 def test_an_invalid_class_is_refused_with_what_it_lacks(name, reason):

@@ -138,8 +138,8 @@ def test_an_unknown_name_causes_a_warning():
     parameters = {**DWA, "DWAPlannerROS": {"sim_tme": 1.0, "zebra": 2}, "planner_frequncy": 1.0}
     _, warnings = settings_from_parameters(parameters, "/move_base/")
     assert warnings == [
-        "unknown parameter /move_base/planner_frequncy, did you mean planner_frequency?",
-        "unknown parameter /move_base/DWAPlannerROS/sim_tme, did you mean sim_time?",
+        'unknown parameter /move_base/planner_frequncy (did you mean "planner_frequency"?)',
+        'unknown parameter /move_base/DWAPlannerROS/sim_tme (did you mean "sim_time"?)',
         "unknown parameter /move_base/DWAPlannerROS/zebra",
     ]
 

@@ -94,7 +94,7 @@ CORNERS = "corners: [[0, 0], [1, 0], [1, 1]]"
         ("a: {kind: keep_out, corners: [[0, 0], [1, 0], [1, .nan]]}", "a.corners must be at least 3 points"),
         (f"a: {{kind: speed, {CORNERS}}}", "a.max_speed is missing"),
         (f"a: {{kind: speed, max_speed: -1, {CORNERS}}}", "a.max_speed must be positive, got -1"),
-        (f"a: {{kind: keep_out, max_speed: 1, {CORNERS}}}", "a.max_speed is not known"),
+        (f"a: {{kind: keep_out, max_speed: 1, {CORNERS}}}", 'unknown key "a.max_speed"'),
         (f"a: {{kind: keep_out, enabled: 3, {CORNERS}}}", "a.enabled must be true or false"),
     ],
 )

@@ -25,7 +25,7 @@ class BlackTea(Tea):
 FILE = Section("", Tea, about="Tea.")
 
 
-def test_a_file_tells_name_default_unit_and_meaning():
+def test_a_file_lists_name_default_unit_and_meaning():
     assert render_yaml(FILE) == (
         "# Tea.\n"
         "draw_time: 3.0  # [min] how long it draws\n"
@@ -37,11 +37,11 @@ def test_a_file_tells_name_default_unit_and_meaning():
     )
 
 
-def test_an_heir_gives_another_default_and_keeps_the_rest():
+def test_a_subclass_changes_a_default_and_inherits_the_rest():
     assert "\nkind: black     # what is brewed: green, black\n" in render_yaml(Section("", BlackTea))
 
 
-def test_sections_nest_repeat_each_other_and_take_the_values_of_objects():
+def test_sections_nest_repeat_others_and_use_values_of_instances():
     cups = Parameter("cups", [{"size": 0.2}, {"size": 1e-5}], "all of them")
     hut = Section("hut", Section("stove", BlackTea(pot="kettle", minutes=9.0), about="hot"), cups)
     house = Section("", hut, Section("shed", same_as="hut"))
@@ -50,6 +50,6 @@ def test_sections_nest_repeat_each_other_and_take_the_values_of_objects():
     assert yaml.safe_load(render_yaml(house)) == {"hut": hut_in_file, "shed": hut_in_file}
 
 
-def test_a_long_meaning_goes_on_below():
+def test_a_long_meaning_continues_on_the_next_line():
     lines = render_yaml(Section("", Parameter("cup", 1, "word " * 40))).splitlines()
     assert len(lines) == 2 and lines[1].startswith("        # word") and len(lines[0]) <= 110

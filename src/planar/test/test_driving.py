@@ -14,11 +14,11 @@ from planar.driving import DriveOutcome, DriveResult, GoalFailed, GoalReached
         ("LOST", DriveResult.FAILED),
     ],
 )
-def test_the_last_status_of_a_goal_says_how_the_drive_ended(status, result):
+def test_the_last_status_of_a_goal_determines_the_result(status, result):
     assert DriveOutcome(status, "").result is result
 
 
-def test_a_drive_that_did_not_arrive_is_refused_for_the_reason_told():
+def test_a_failed_drive_has_the_reason_of_its_status():
     assert DriveOutcome("SUCCEEDED", "Goal reached.").event == GoalReached()
     assert DriveOutcome("ABORTED", "no way").event == GoalFailed("no way")
     assert DriveOutcome("ABORTED", "").event == GoalFailed("ABORTED")

@@ -1,7 +1,7 @@
 from planar.elapsed_time import ElapsedTime
 
 
-def test_what_a_clock_is_set_back_by_has_not_passed():
+def test_a_jump_back_of_the_clock_counts_as_no_time():
     elapsed = ElapsedTime()
     assert [elapsed.update(now) for now in (50.0, 50.5, 60.0, 10.0, 10.0, 12.0)] == [
         0.0,

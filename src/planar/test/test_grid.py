@@ -19,7 +19,7 @@ def test_cells_and_points_are_each_others_inverse_under_a_turned_origin():
     assert grid.cells_of(grid.points_of(cells)).tolist() == cells.tolist()
 
 
-def test_outside_the_grid_nothing_is_known():
+def test_cells_outside_the_grid_are_unknown():
     assert grid_from_picture("##\n##").value_at(5.0, 5.0) == UNKNOWN
 
 
@@ -50,7 +50,7 @@ def test_rays_end_at_the_walls_of_a_room():
     assert ranges == pytest.approx([2.5, 1.5, 2.5, 1.5, 1.5 * math.sqrt(2)])
 
 
-def test_a_ray_that_meets_nothing_has_the_maximum_range():
+def test_a_ray_that_hits_nothing_has_the_maximum_range():
     grid = grid_from_picture("...", resolution=1.0)
     assert cast_rays(grid, Pose2(1.5, 0.5), np.array([0.3]), 4.0) == pytest.approx([4.0])
 

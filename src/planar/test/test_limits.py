@@ -1,4 +1,4 @@
-"""What means nothing to a robot does not become a value."""
+"""Values beyond the limits are refused."""
 
 import math
 
@@ -8,7 +8,7 @@ import pytest
 from planar import OccupancyGrid, PlanarError, Pose2, Scan, grid_from_picture
 from planar.geometry.ray_casting import cast_rays
 
-SENSELESS = (math.nan, math.inf, -math.inf, 1e300)
+INVALID = (math.nan, math.inf, -math.inf, 1e300)
 
 
 def scan(**changed):
@@ -16,33 +16,33 @@ def scan(**changed):
     return Scan(ranges=np.ones(5, np.float32), **{**numbers, **changed})
 
 
-@pytest.mark.parametrize("value", SENSELESS)
+@pytest.mark.parametrize("value", INVALID)
 @pytest.mark.parametrize("name", ["angle_min", "angle_increment", "range_min", "range_max"])
-def test_a_scan_of_senseless_numbers_cannot_be_made(name, value):
-    with pytest.raises(PlanarError, match=f"a scan with {name}"):
+def test_a_scan_with_invalid_numbers_is_refused(name, value):
+    with pytest.raises(PlanarError, match=f"a scan with invalid {name}"):
         scan(**{name: value})
 
 
 @pytest.mark.parametrize("place", [Pose2(math.nan, 0.0), Pose2(0.0, 1e18), Pose2(yaw=1e300)])
-def test_a_scan_from_nowhere_cannot_be_made(place):
+def test_a_scan_with_an_invalid_laser_pose_is_refused(place):
     with pytest.raises(PlanarError):
         scan(laser_in_base=place)
 
 
-@pytest.mark.parametrize("resolution", [*SENSELESS, 0.0, -1.0, 1e-30])
-def test_a_grid_of_senseless_cells_cannot_be_made(resolution):
+@pytest.mark.parametrize("resolution", [*INVALID, 0.0, -1.0, 1e-30])
+def test_a_grid_with_an_invalid_resolution_is_refused(resolution):
     with pytest.raises(PlanarError):
         OccupancyGrid(np.zeros((2, 2), np.int8), resolution)
 
 
-@pytest.mark.parametrize("value", SENSELESS)
-def test_a_grid_that_lies_nowhere_cannot_be_made(value):
+@pytest.mark.parametrize("value", INVALID)
+def test_a_grid_with_an_invalid_origin_is_refused(value):
     with pytest.raises(PlanarError):
         OccupancyGrid(np.zeros((2, 2), np.int8), 0.05, Pose2(value))
 
 
-def test_a_ray_from_far_off_the_map_meets_what_is_in_its_way_at_once():
-    """Walked cell by cell this would take a minute and more."""
+def test_a_ray_from_far_outside_the_map_is_cast_quickly():
+    """Cell by cell outside the map this would take more than a minute."""
     grid = grid_from_picture("....\n.#..\n....", resolution=0.01)
     away = np.zeros(2000)
     from_left = cast_rays(grid, Pose2(-1e6, 0.015), away, 1e7)

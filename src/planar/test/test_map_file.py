@@ -42,7 +42,7 @@ def test_a_saved_map_is_loaded_as_it_was(tmp_path):
     assert "image: home.pgm" in (tmp_path / "home.yaml").read_text()
 
 
-def test_a_map_in_bands_is_saved_as_the_whole_one(tmp_path):
+def test_a_banded_map_is_saved_like_the_whole_one(tmp_path):
     whole = grid_from_picture("#.?\n..#\n??.\n.#.", resolution=0.1, origin=Pose2(-1.0, 2.0, 0.25))
     bands = iter([whole.cells[3:], whole.cells[1:3], whole.cells[:1]])
     save_map(whole, tmp_path / "whole")
@@ -51,7 +51,7 @@ def test_a_map_in_bands_is_saved_as_the_whole_one(tmp_path):
     assert load_map(tmp_path / "bands.yaml").cells.tolist() == whole.cells.tolist()
 
 
-def test_bands_that_fail_leave_the_old_map_alone(tmp_path):
+def test_a_failure_while_saving_bands_keeps_the_old_map(tmp_path):
     def bands():
         yield whole.cells[1:]
         raise KeyboardInterrupt
@@ -111,13 +111,13 @@ def test_a_malformed_map_is_refused_naming_file_line_and_key(tmp_path, before, a
     assert str(tmp_path) in str(caught.value)
 
 
-def test_a_failed_save_leaves_the_old_map_alone(tmp_path):
+def test_a_failed_save_keeps_the_old_map(tmp_path):
     with pytest.raises(FileWriteError, match="cannot be written"):
         save_map(grid_from_picture("#"), tmp_path / "nowhere" / "home")
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_disk_that_is_full_after_the_image_leaves_the_old_pair_alone(tmp_path):
+def test_a_disk_that_is_full_after_the_image_keeps_the_old_pair(tmp_path):
     yaml_path = save_map(grid_from_picture("#"), tmp_path / "home")
     old = [path.read_bytes() for path in sorted(tmp_path.iterdir())]
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
@@ -133,11 +133,11 @@ def test_a_disk_that_is_full_after_the_image_leaves_the_old_pair_alone(tmp_path)
 @pytest.mark.parametrize(
     ("data", "why"),
     [
-        (b"version https://git-lfs.github.com/spec/v1\noid sha256:1e\nsize 30\n", "git lfs pull"),
-        (b"<html>", "of no known format"),
+        (b"version https://git-lfs.github.com/spec/v1\noid sha256:1e\nsize 30\n", "run git lfs pull"),
+        (b"<html>", "unknown format"),
     ],
 )
-def test_what_came_instead_of_an_image_is_told(tmp_path, data, why):
+def test_an_invalid_image_is_refused_with_the_reason(tmp_path, data, why):
     path = write(tmp_path)
     (tmp_path / "a.pgm").write_bytes(data)
     with pytest.raises(MapFileError, match=why):

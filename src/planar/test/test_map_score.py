@@ -30,7 +30,7 @@ def test_the_true_map_is_perfect():
     assert (score.recall, score.precision, score.doubled_walls) == (1.0, 1.0, 0)
 
 
-def test_only_walls_that_can_be_seen_have_to_be_mapped():
+def test_only_visible_walls_have_to_be_mapped():
     room = box_room()
     inner = visible_walls(room, START, 0.18, 10.0)
     assert set(inner[:, 0]) == set(range(5, 55))
@@ -57,14 +57,14 @@ def test_a_wall_that_does_not_exist_costs_precision():
 
 
 @pytest.mark.parametrize("shift, is_good", [(0.08, True), (0.20, False)])
-def test_maps_may_be_off_by_the_tolerance(shift, is_good):
+def test_walls_may_be_displaced_by_the_tolerance(shift, is_good):
     room = box_room()
     moved = OccupancyGrid(room.cells, room.resolution, Pose2(shift, 0.0) @ room.origin)
     score = score_map(moved, room, START)
     assert (min(score.recall, score.precision) == 1.0) == is_good
 
 
-def test_a_map_in_a_frame_of_its_own_is_scored_there():
+def test_a_map_may_be_in_a_frame_other_than_the_truth():
     truth_in_map = Pose2(3.0, -1.0, math.radians(30.0))
     room = box_room()
     turned = OccupancyGrid(room.cells, room.resolution, truth_in_map @ room.origin)
@@ -72,17 +72,17 @@ def test_a_map_in_a_frame_of_its_own_is_scored_there():
     assert (score.recall, score.precision) == (1.0, 1.0)
 
 
-def test_a_wall_drawn_twice_is_noticed():
+def test_a_wall_drawn_twice_is_counted():
     doubled = changed(box_room(), slice(6, 54), 10, OCCUPIED)
     assert score_map(doubled, box_room(), START).doubled_walls == 1
 
 
-def test_a_narrow_gap_that_is_really_there_is_no_doubled_wall():
+def test_a_true_narrow_gap_is_no_doubled_wall():
     truth = changed(box_room(), slice(6, 54), 10, OCCUPIED)
     assert score_map(truth, truth, START).doubled_walls == 0
 
 
-def test_a_wall_drawn_again_far_off_is_noticed():
+def test_a_second_wall_far_away_is_counted():
     doubled = changed(box_room(), slice(20, 40), 20, OCCUPIED)
     assert score_map(doubled, box_room(), START).doubled_walls == 1
 

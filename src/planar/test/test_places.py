@@ -21,7 +21,7 @@ def test_places_are_read_with_defaults(tmp_path):
         ("a: {x: 1}", "places.yaml:1: a.y is missing"),
         ("a: {x: 1, y: north}", "places.yaml:1: a.y must be a number"),
         ("a: {x: 1, y: .nan}", "places.yaml:1: a.y must be a number"),
-        ("a: {x: 1, y: 2, z: 3}", ":1: a.z is not known; known are x, y, yaw, radius, approaches"),
+        ("a: {x: 1, y: 2, z: 3}", r':1: unknown key "a.z" \(known: x, y, yaw, radius, approaches\)'),
         ("\na: {x: 1, y: 2, radius: 0}", ":2: a.radius must be positive"),
         ("a: {x: 1, y: 2, approaches: [{x: 1}]}", r":1: a.approaches\[1\].y is missing"),
         ("a: 3", ":1: a must be a table of keys and values, got 3"),
@@ -44,26 +44,26 @@ def test_a_missing_file_or_place_is_named(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "x, reason", [(0.5, "obstacle"), (1.5, None), (2.5, "knows nothing"), (7.0, "outside the map")]
+    "x, reason", [(0.5, "obstacle"), (1.5, None), (2.5, "unknown space"), (7.0, "outside the map")]
 )
-def test_places_that_no_robot_can_reach_are_told_from_free_ones(x, reason):
+def test_unreachable_places_have_a_reason(x, reason):
     answer = unreachable_reason(NamedPlace("shelf", Pose2(x, 0.5)), grid_from_picture("#.?"))
     assert answer is None if reason is None else ("place shelf" in answer and reason in answer)
 
 
-def test_a_robot_within_the_radius_is_there():
+def test_a_robot_within_the_radius_is_at_the_place():
     place = NamedPlace("a", Pose2(1.0, 1.0), 0.5)
     assert place.contains(Pose2(1.3, 1.3, 2.0))
     assert not place.contains(Pose2(1.4, 1.4, 0.0))
 
 
-def test_each_pose_of_a_place_serves():
+def test_a_robot_near_any_pose_is_at_the_place():
     place = NamedPlace("a", Pose2(1.0, 1.0), 0.5, (Pose2(3.0, 1.0),))
     assert place.contains(Pose2(3.2, 1.0))
     assert not place.contains(Pose2(2.0, 1.0))
 
 
-def test_an_approach_in_an_obstacle_is_found():
+def test_an_approach_in_an_obstacle_makes_a_place_unreachable():
     place = NamedPlace("shelf", Pose2(1.5, 0.5), approaches=(Pose2(0.5, 0.5),))
     assert (
         unreachable_reason(place, grid_from_picture("#.?"))

@@ -6,7 +6,7 @@ import pytest
 from planar import Pose2, wrap
 
 
-def test_inner_names_of_a_product_meet():
+def test_inner_frames_of_a_product_cancel():
     odom_in_map = Pose2(1.0, 2.0, math.pi / 2)
     base_in_odom = Pose2(3.0, 0.0, math.pi / 2)
     base_in_map = odom_in_map @ base_in_odom
@@ -18,13 +18,13 @@ def test_a_pose_times_its_inverse_is_the_identity():
     assert (pose @ pose.inverse()).as_array() == pytest.approx([0, 0, 0], abs=1e-12)
 
 
-def test_points_are_moved_as_poses_are():
+def test_points_are_transformed_like_poses():
     pose, other = Pose2(1.0, -2.0, 0.7), Pose2(0.4, 0.9, 0.0)
     moved = pose.transform_points(np.array([[other.x, other.y]]))
     assert moved[0] == pytest.approx((pose @ other).as_array()[:2])
 
 
 @pytest.mark.parametrize("turns", [-3, -1, 0, 1, 5])
-def test_wrapping_takes_whole_turns_away(turns):
+def test_wrapping_removes_whole_turns(turns):
     assert wrap(0.5 + turns * 2 * math.pi) == pytest.approx(0.5)
     assert wrap(np.array([0.5 + turns * 2 * math.pi]))[0] == pytest.approx(0.5)

@@ -1,4 +1,4 @@
-"""Files are read with limits, and nothing but files."""
+"""Only regular files are read, with a size limit."""
 
 import os
 import struct
@@ -16,12 +16,12 @@ from planar.maps.map_file import cells_from_image
 
 @pytest.fixture
 def pipe(tmp_path):
-    """Whoever opened it to read would wait for ever for somebody to write."""
+    """A pipe without a writer; reading it would block."""
     os.mkfifo(str(tmp_path / "pipe"))
     return tmp_path / "pipe"
 
 
-def test_a_pipe_is_not_waited_for(pipe):
+def test_a_pipe_is_refused_without_blocking(pipe):
     with pytest.raises(OSError, match="not a regular file"):
         read_bytes(pipe)
     with pytest.raises(SettingsError, match="not a regular file"):
@@ -29,12 +29,12 @@ def test_a_pipe_is_not_waited_for(pipe):
 
 
 @pytest.mark.parametrize("device", ["/dev/zero", "/dev/tty"])
-def test_a_device_is_not_read(device):
+def test_a_device_is_refused(device):
     with pytest.raises(OSError):
         read_bytes(device)
 
 
-def test_a_file_that_is_too_large_is_not_read(tmp_path):
+def test_a_file_above_the_limit_is_refused(tmp_path):
     path = tmp_path / "large"
     with path.open("wb") as file:
         file.truncate(11)
@@ -43,11 +43,11 @@ def test_a_file_that_is_too_large_is_not_read(tmp_path):
         read_bytes(path, 10)
 
 
-def test_a_name_that_no_file_can_have_is_none(tmp_path):
+def test_an_invalid_file_name_does_not_exist(tmp_path):
     assert not exists(tmp_path / ("x" * 300))
 
 
-def test_arrays_that_unpack_to_more_than_memory_holds_are_not_unpacked(tmp_path):
+def test_a_decompression_bomb_is_refused(tmp_path):
     path = tmp_path / "bomb.npz"
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         header = (
@@ -61,16 +61,16 @@ def test_arrays_that_unpack_to_more_than_memory_holds_are_not_unpacked(tmp_path)
         read_arrays(path)
 
 
-def test_arrays_of_objects_are_not_unpickled(tmp_path):
+def test_object_arrays_are_not_unpickled(tmp_path):
     np.savez(tmp_path / "objects.npz", a=np.array([{}], dtype=object))
     with pytest.raises(ValueError, match="pickle"):
         read_arrays(tmp_path / "objects.npz")
 
 
-def test_what_is_no_array_is_not_taken_for_one(tmp_path):
+def test_a_member_that_is_not_an_array_is_refused(tmp_path):
     with zipfile.ZipFile(tmp_path / "text.npz", "w") as archive:
         archive.writestr("poses.npy", "no array")
-    with pytest.raises(ValueError, match="poses is no array"):
+    with pytest.raises(ValueError, match="poses is not an array"):
         read_arrays(tmp_path / "text.npz")
 
 
@@ -83,7 +83,7 @@ def png_that_claims(width, height):
 
 
 @pytest.mark.parametrize("size", [(13000, 13000), (65000, 65000), (2**31 - 1, 2**31 - 1)])
-def test_a_picture_that_claims_to_be_huge_is_refused(tmp_path, size):
+def test_an_image_that_claims_a_huge_size_is_refused(tmp_path, size):
     path = tmp_path / "huge.png"
     path.write_bytes(png_that_claims(*size))
     with pytest.raises(MapFileError, match="not a readable image"):
@@ -91,7 +91,7 @@ def test_a_picture_that_claims_to_be_huge_is_refused(tmp_path, size):
 
 
 @pytest.mark.parametrize("key", ["resolution: 1" + 400 * "0", "resolution: 1e300", "origin: [1e300, 0, 0]"])
-def test_a_map_of_senseless_numbers_is_refused_by_name(tmp_path, key):
+def test_a_map_with_invalid_numbers_is_refused_with_the_key(tmp_path, key):
     (tmp_path / "map.png").write_bytes(png_that_claims(8, 8))
     rest = {"resolution": "0.05", "origin": "[0, 0, 0]"}
     rest.pop(key.partition(":")[0])

@@ -27,7 +27,7 @@ def test_official_names_fill_readable_fields_and_the_rest_keeps_its_default():
     assert unknown == []
 
 
-def test_names_that_nobody_knows_are_handed_back():
+def test_unknown_names_are_returned():
     assert settings_from(Engine, {"cilinders": 3}, NAMES)[1] == ["cilinders"]
     assert nearest_name("cilinders", ["cylinders", "power"]) == "cylinders"
 

@@ -23,7 +23,7 @@ def step(monkeypatch):
 def ask_for_a_while(step, monkeypatch):
     has_ended = threading.Event()
     monkeypatch.setattr(rospy, "is_shutdown", has_ended.is_set)
-    asking = threading.Thread(target=step._ask, args=(lambda: True,))
+    asking = threading.Thread(target=step._run, args=(lambda: True,))
     asking.start()
     time.sleep(0.1)
     has_ended.set()

@@ -48,7 +48,7 @@ def test_a_scan_with_nan_angles_is_skipped_with_a_warning(tmp_path, direction):
                 setattr(scan, direction, math.nan)
             bag.write("/scan", scan, scan.header.stamp)
     assert [one.scan.stamp for one in log_of(path, warnings.append)] == [100.0, 102.0]
-    warning = f"{path}: skipping a scan (a scan with {direction} nan means nothing), at stamp 101.000"
+    warning = f"{path}: skipping a scan (a scan with invalid {direction} nan), at stamp 101.000"
     assert any(text.startswith(warning) for text in warnings)
 
 

@@ -50,7 +50,7 @@ def receive(buffer, by, *words):
     for word in words:
         content = BytesIO()
         String(word).serialize(content)
-        buffer._take(SUBSCRIBER, [SerializedMessage(content.getvalue())], by)
+        buffer._on_receive(SUBSCRIBER, [SerializedMessage(content.getvalue())], by)
 
 
 def test_buffered_messages_are_delivered_when_released(buffer, received):

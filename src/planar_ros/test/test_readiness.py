@@ -1,4 +1,4 @@
-"""Who is waited for while a node works is told after a while, and taken back as soon as it goes on."""
+"""Missing inputs and stalls are published after a while, and withdrawn at once."""
 
 import pytest
 
@@ -7,29 +7,29 @@ from planar_ros.node.readiness import ReadinessMonitor, StallReporter
 
 
 @pytest.fixture
-def told(monkeypatch):
-    said = []
+def published(monkeypatch):
+    texts = []
 
     class Publisher:
         def __init__(self, *_arguments, **_named):
             pass
 
         def publish(self, text):
-            said.append(text)
+            texts.append(text)
 
     monkeypatch.setattr(readiness.rospy, "Publisher", Publisher)
-    monkeypatch.setattr(readiness._WaitingForPublisher, "_lacking", {})
-    monkeypatch.setattr(readiness._WaitingForPublisher, "_told", None)
-    return said
+    monkeypatch.setattr(readiness._WaitingForPublisher, "_missing_by_part", {})
+    monkeypatch.setattr(readiness._WaitingForPublisher, "_published", None)
+    return texts
 
 
-def update(reporter, monkeypatch, *moments):
-    for moment, names in moments:
-        monkeypatch.setattr(readiness.time, "monotonic", lambda moment=moment: moment)
+def update(reporter, monkeypatch, *readings):
+    for time, names in readings:
+        monkeypatch.setattr(readiness.time, "monotonic", lambda time=time: time)
         reporter.update(names)
 
 
-def test_a_short_wait_is_nothing_to_tell(told, monkeypatch):
+def test_a_short_wait_is_not_published(published, monkeypatch):
     update(
         StallReporter(1.0),
         monkeypatch,
@@ -39,10 +39,10 @@ def test_a_short_wait_is_nothing_to_tell(told, monkeypatch):
         (1.5, ["amcl"]),
         (2.4, ["amcl"]),
     )
-    assert told == []
+    assert published == []
 
 
-def test_a_long_wait_is_told_once_and_taken_back(told, monkeypatch):
+def test_a_long_wait_is_published_once_and_withdrawn(published, monkeypatch):
     both = ["amcl", "move_base"]
     update(
         StallReporter(1.0),
@@ -54,20 +54,20 @@ def test_a_long_wait_is_told_once_and_taken_back(told, monkeypatch):
         (1.4, []),
         (1.5, []),
     )
-    assert told == ["amcl\nmove_base", "amcl", ""]
+    assert published == ["amcl\nmove_base", "amcl", ""]
 
 
-def test_who_has_all_that_it_waits_for_does_not_hide_what_another_one_lacks(told, monkeypatch):
+def test_a_ready_component_does_not_hide_what_another_one_lacks(published, monkeypatch):
     monkeypatch.setattr(readiness.threading.Thread, "start", lambda _: None)
     is_warm, has_map = [], []
     kernels, inputs = (
         ReadinessMonitor({"kernels": lambda: is_warm}),
         ReadinessMonitor({"a map": lambda: has_map}),
     )
-    kernels._look()
-    inputs._look()
+    kernels._check()
+    inputs._check()
     is_warm.append(True)
-    kernels._look()
+    kernels._check()
     has_map.append(True)
-    inputs._look()
-    assert told == ["kernels", "kernels\na map", "a map", ""]
+    inputs._check()
+    assert published == ["kernels", "kernels\na map", "a map", ""]

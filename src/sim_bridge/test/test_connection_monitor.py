@@ -56,7 +56,7 @@ def test_expected_observers_are_waited_for(parameters):
     monitor = joined()
     assert not is_complete_within(monitor, LATE_SECONDS)
     assert MISSING in monitor.missing()
-    parameters["/simulation/audience"] = ["/referee"]
+    parameters["/simulation/observers"] = ["/referee"]
     assert is_complete_within(monitor, DEADLINE)
     assert monitor.observers == {"/referee"}
     assert monitor.given_up() == []
@@ -79,5 +79,5 @@ def test_the_old_name_of_the_parameter_still_works(parameters):
     monitor = joined()
     assert not is_complete_within(monitor, LATE_SECONDS)
     assert MISSING in monitor.missing()
-    parameters["/simulation/audience"] = ["/referee"]
+    parameters["/simulation/observers"] = ["/referee"]
     assert is_complete_within(monitor, DEADLINE)

@@ -158,7 +158,7 @@ def test_a_kind_that_cannot_be_relayed_is_refused_when_added():
     faults = RelayedFaults([])
     with pytest.raises(SettingsError, match="^kidnapped changes no scan"):
         faults.add("kidnapped", 1.0, 0.5, 0.0)
-    with pytest.raises(SettingsError, match="there is no fault 'scan_nans', did you mean scan_nan?"):
+    with pytest.raises(SettingsError, match="there is no fault 'scan_nans' .did you mean \"scan_nan\""):
         faults.add("scan_nans", 1.0, 0.5, 0.0)
     assert not any(faults.active(0.0, change) for change in MESSAGE_METHODS)
 
@@ -336,7 +336,7 @@ def test_a_late_command_is_the_earlier_message():
 def test_an_invalid_message_is_refused(value_type, message):
     if value_type is ReceivedOdometry:
         message.pose.pose.position.x = math.nan
-    with pytest.raises(PlanarError, match="means nothing"):
+    with pytest.raises(PlanarError, match="invalid|out of range"):
         value_type.from_msg(message)
 
 

@@ -152,7 +152,7 @@ def test_faults_are_read_from_a_file(tmp_path):
         ("{kind: kidnapped, start: -1}", "start must be not negative"),
         ("{kind: kidnapped, start: 2, end: 1}", "end must be after start"),
         ("{kind: kidnapped, seed: x}", "seed must be a whole number"),
-        ("{kind: kidnapped, sed: 1}", "sed is not known"),
+        ("{kind: kidnapped, sed: 1}", 'unknown key "faults.1..sed"'),
         ("kidnapped", "must be a table"),
     ],
 )

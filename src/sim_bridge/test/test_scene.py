@@ -145,9 +145,9 @@ def test_a_model_may_be_removed_while_a_wrench_acts_on_it(scene):
 
 
 def test_unknown_names_are_refused_with_the_nearest_one(scene):
-    with pytest.raises(UnknownEntityError, match="no model named 'crat', did you mean crate"):
+    with pytest.raises(UnknownEntityError, match="no model named 'crat' .did you mean \"crate\""):
         scene.remove_model("crat")
-    with pytest.raises(UnknownEntityError, match="did you mean crate::link"):
+    with pytest.raises(UnknownEntityError, match='did you mean "crate::link"'):
         scene.models.link_state("crate::lnk")
     with pytest.raises(UnknownEntityError, match="no robot named 'r'"):
         scene.step({"r": Twist2()})

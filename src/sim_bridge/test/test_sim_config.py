@@ -36,7 +36,7 @@ def test_the_default_noise_is_that_of_the_turtlebot():
 
 
 def test_an_unknown_noise_profile_is_refused_with_the_nearest_name():
-    with pytest.raises(SettingsError, match=r"one of ideal, turtlebot, high.* did you mean ideal\?"):
+    with pytest.raises(SettingsError, match=r"one of ideal, turtlebot, high.*did you mean .ideal.\?"):
         noise_named("idea")
 
 
@@ -69,7 +69,7 @@ def test_errors_about_settings_of_the_node_name_the_parameter(values):
 
 
 def test_an_unknown_robot_is_refused_with_the_nearest_name():
-    with pytest.raises(RobotError, match="did you mean turtlebot_lidar"):
+    with pytest.raises(RobotError, match='did you mean "turtlebot_lidar"'):
         robot_named("turtlebot_lidr")
 
 

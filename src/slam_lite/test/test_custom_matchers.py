@@ -155,7 +155,7 @@ def test_the_localizer_uses_it_too(office):
 @pytest.mark.parametrize(
     ("name", "reason"),
     [
-        ("no_such.module/Matcher", "there is no module no_such on Python's path"),
+        ("no_such.module/Matcher", "no module no_such on Python's path"),
         (
             "custom.matchers/DoesNotMatch",
             "is no scan matcher: it has no match(cloud, local_map, prediction)",

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
 
 from planar import OCCUPIED, OccupancyGrid, Pose2, Scan, grid_from_picture
-from planar.geometry.limits import OutOfRangeError
+from planar.errors import OutOfRangeError
 from planar.geometry.ray_casting import cast_rays
 from slam_lite.config import MapperSettings
 from slam_lite.map_localizer import MapLocalizer

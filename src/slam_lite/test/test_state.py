@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from planar import FileWriteError, Pose2, Scan
-from planar.geometry.limits import OutOfRangeError
+from planar.errors import OutOfRangeError
 from slam_lite.mapper import Mapper
 from slam_lite.state import StateFileError, load_state, save_state
 

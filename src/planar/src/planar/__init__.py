@@ -1,13 +1,13 @@
-"""Planar geometry shared by every package: poses, grids, scans, ray casting, distance fields, map files.
+"""Plane geometry, grids, scans, map files and settings shared by every package.
 
-Pure: numpy, scipy and numba only. Lengths are metres, angles radians (REP 103); poses are named
-``<what>_in_<frame>`` so that the inner names of a product meet::
+Depends on numpy, scipy and numba only, not on ROS. Lengths are metres, angles radians (REP 103). A pose is
+named ``<what>_in_<frame>``, so that the inner names of a product match::
 
     odom_in_map = base_in_map @ base_in_odom.inverse()
 """
 
-from planar.errors import PlanarError, SettingsError
-from planar.files.writing import FileWriteError, write_atomically
+from planar.errors import FileWriteError, PlanarError, SettingsError
+from planar.files.writing import write_atomically
 from planar.geometry.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid, grid_from_picture
 from planar.geometry.pose import Pose2, Twist2, wrap
 from planar.geometry.scan import Scan

@@ -1,4 +1,4 @@
-"""What a task and whoever drives the robot for it tell each other; pure, so that both can be rehearsed."""
+"""Orders and events between a task and the component that drives the robot; independent of ROS."""
 
 import enum
 from dataclasses import dataclass
@@ -7,7 +7,12 @@ from typing import Union
 
 @dataclass(frozen=True)
 class FinishTask:
-    """Order: the task is over, and why."""
+    """Order: end the task.
+
+    Attributes:
+        success: Whether the task succeeded.
+        reason: Explanation for people.
+    """
 
     success: bool
     reason: str
@@ -15,14 +20,16 @@ class FinishTask:
 
 @dataclass(frozen=True)
 class GoalReached:
-    """Event: the robot has arrived where the last order sent it."""
+    """Event: the robot reached the goal of the last order."""
 
 
 @dataclass(frozen=True)
 class GoalFailed:
-    """Event: the robot gave the last order up, and why.
+    """Event: the robot did not reach the goal of the last order.
 
-    ``is_taken_over``: it could have gone on, but somebody else gave it another goal, or cancelled this one.
+    Attributes:
+        reason: Explanation for people.
+        is_preempted: Whether another client replaced or cancelled the goal, rather than navigation failing.
     """
 
     reason: str
@@ -31,13 +38,15 @@ class GoalFailed:
 
 @dataclass(frozen=True)
 class RobotDisplaced:
-    """Event: the robot, which stood there, sees something else: somebody may have carried it away."""
+    """Event: at the goal, the scans no longer fit the map; the robot may have been carried away."""
 
 
 class DriveResult(enum.Enum):
+    """How a drive to a goal ended."""
+
     REACHED = "reached"
     PREEMPTED = "preempted"
-    """Another goal took its place, or somebody cancelled it."""
+    """Another goal replaced it, or a client cancelled it."""
     FAILED = "failed"
 
 
@@ -50,9 +59,11 @@ _RESULTS = {
 
 @dataclass(frozen=True)
 class DriveOutcome:
-    """How a drive to a goal ended.
+    """How a drive to a goal ended, in actionlib's terms.
 
-    ``status``: the name of its last status in actionlib_msgs/GoalStatus. ``text``: why, if that was told.
+    Attributes:
+        status: Name of the last status in actionlib_msgs/GoalStatus.
+        text: Status text; may be empty.
     """
 
     status: str
@@ -64,7 +75,7 @@ class DriveOutcome:
 
     @property
     def event(self) -> Union[GoalReached, GoalFailed]:
-        """The same for a task that only cares whether the robot has arrived."""
+        """The outcome as an event for a task."""
         if self.result is DriveResult.REACHED:
             return GoalReached()
         return GoalFailed(self.text or self.status, self.result is DriveResult.PREEMPTED)

@@ -1,12 +1,12 @@
-"""Time that has passed, whatever becomes of the clock."""
+"""Elapsed time of a clock that may jump back."""
 
 from typing import Optional
 
 
 class ElapsedTime:
-    """Seconds since the first look at a clock; when it is set back, no time has passed.
+    """Seconds since the first reading of a clock; a jump back counts as no time.
 
-    A moment to wait for, kept in the clock's own time, could lie ahead for ever then.
+    Deadlines stored as absolute times would lie in the future indefinitely after such a jump.
     """
 
     def __init__(self) -> None:
@@ -14,7 +14,14 @@ class ElapsedTime:
         self._latest: Optional[float] = None
 
     def update(self, now: float) -> float:
-        """``now``: what the clock says, seconds."""
+        """Return the elapsed time.
+
+        Args:
+            now: Reading of the clock [s].
+
+        Returns:
+            Seconds since the first reading, without jumps back.
+        """
         if self._latest is not None:
             self._seconds += max(now - self._latest, 0.0)
         self._latest = now

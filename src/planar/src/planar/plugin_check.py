@@ -1,7 +1,7 @@
-"""What any plugin has to do, whoever wrote it: checks of each kind, ``python3 -m PACKAGE.check NAME``.
+"""Contract checks for plugins, run as ``python3 -m PACKAGE.check NAME``.
 
-A check is a function whose docstring says what is asked, and that raises CheckFailed with what was found
-instead. The unit tests hold the project's own to the same.
+A check is a function whose docstring states the requirement and that raises CheckFailed with what it found
+instead. The unit tests apply the same checks to the built-in classes.
 """
 
 import argparse
@@ -16,16 +16,18 @@ from planar.plugins import PluginContract, PluginError, load_plugin
 Check = Callable[[Any], None]
 
 
-class CheckFailed(Exception):  # noqa: N818  -- it is the plugin that has erred
-    """A plugin does not do what its contract says; the text is what it does."""
+class CheckFailed(Exception):  # noqa: N818  -- reports a fault of the plugin, not of this program
+    """A plugin violates its contract; the text describes what it does instead."""
 
 
 @dataclass(frozen=True)
 class CheckSuite:
-    """A kind of plugin and what each of it has to do.
+    """A kind of plugin and its checks.
 
-    ``find``: gives what the checks are made with for a name, None if there is no such plugin of this kind;
-    raises PluginError with what it lacks.
+    Attributes:
+        find: Returns the argument of the checks for a plugin's name, or None if there is no such plugin of
+            this kind; raises PluginError if the plugin lacks something.
+        checks: Functions that raise CheckFailed.
     """
 
     find: Callable[[str], Any]
@@ -33,18 +35,24 @@ class CheckSuite:
 
 
 def plugin_finder(contract: PluginContract, made_of: Callable[[str], Any]) -> Callable[[str], Any]:
-    """Make a CheckSuite's ``find`` for custom classes: ``made_of`` makes what to check of a name."""
+    """Make the ``find`` of a CheckSuite for custom classes.
+
+    Args:
+        contract: Contract of the kind of plugin.
+        made_of: Makes the argument of the checks from the plugin's name.
+    """
     return lambda name: None if load_plugin(name, contract) is None else made_of(name)
 
 
-def expect(is_so: bool, text: str) -> None:
-    if not is_so:
+def expect(condition: bool, text: str) -> None:
+    """Raise CheckFailed with ``text`` unless the condition holds."""
+    if not condition:
         raise CheckFailed(text)
 
 
 @contextmanager
 def expect_error(kind: Type[Exception], text: str) -> Iterator[None]:
-    """What is inside has to raise ``kind``."""
+    """Check that the block raises an exception of type ``kind``."""
     try:
         yield
     except kind:
@@ -55,13 +63,22 @@ def expect_error(kind: Type[Exception], text: str) -> Iterator[None]:
 def run_checks(
     package: str, kits: Mapping[str, CheckSuite], arguments: Optional[Sequence[str]] = None
 ) -> int:
-    """Returns 0 if the plugin does all that is asked, 1 if not, 2 if there is no such plugin."""
+    """Run the checks of a plugin and print their results.
+
+    Args:
+        package: Name of the package, for the usage message.
+        kits: Suites by kind of plugin.
+        arguments: Command line; by default that of the process.
+
+    Returns:
+        Exit code: 0 if all checks pass, 1 if one fails, 2 if there is no such plugin.
+    """
     parser = argparse.ArgumentParser(
         prog=f"python3 -m {package}.check",
-        description=f"Try a plugin of {package}: does it do what its contract says?",
+        description=f"Check whether a plugin of {package} satisfies its contract.",
     )
-    parser.add_argument("name", metavar="NAME", help="my_package.my_module/MyClass, or another name it has")
-    parser.add_argument("--kind", choices=kits, help="what it is, if it could be several")
+    parser.add_argument("name", metavar="NAME", help="my_package.my_module/MyClass or an entry point")
+    parser.add_argument("--kind", choices=kits, help="kind of the plugin, if the name fits several")
     options = parser.parse_args(arguments)
     try:
         subject, checks = _found(options.name, [kits[options.kind]] if options.kind else [*kits.values()])
@@ -74,7 +91,7 @@ def run_checks(
 
 
 def _found(name: str, kits: List[CheckSuite]) -> Tuple[Any, Tuple[Check, ...]]:
-    """What the checks are made with, and these. Raises PluginError with what it lacks."""
+    """Return the argument of the checks, and the checks. Raises PluginError with what the plugin lacks."""
     reasons = []
     for kit in kits:
         try:
@@ -84,15 +101,15 @@ def _found(name: str, kits: List[CheckSuite]) -> Tuple[Any, Tuple[Check, ...]]:
             continue
         if subject is not None:
             return subject, kit.checks
-    raise PluginError("\n       ".join(dict.fromkeys(reasons)) or f"there is no plugin {name}")
+    raise PluginError("\n       ".join(dict.fromkeys(reasons)) or f"no plugin named {name}")
 
 
 def _passes(subject: Any, check: Check) -> bool:
-    asked = (check.__doc__ or "").strip().splitlines()[0]
+    requirement = (check.__doc__ or "").strip().splitlines()[0]
     try:
         check(subject)
     except (CheckFailed, PlanarError) as error:
-        print(f"FAIL  {asked}\n      {error}")
+        print(f"FAIL  {requirement}\n      {error}")
         return False
-    print(f"ok    {asked}")
+    print(f"ok    {requirement}")
     return True

@@ -1,1 +1,1 @@
-"""Between ROS and the pure packages: messages to types, parameters to settings, transforms, manners."""
+"""ROS side of the pure packages: messages, transforms, parameters, node start-up, lock-step, bags."""

@@ -7,8 +7,8 @@ from typing import List, Optional, Tuple
 import numpy as np
 
 from planar import OccupancyGrid, Pose2, Scan
+from planar.errors import OutOfRangeError
 from planar.geometry.grid import BandedGrid
-from planar.geometry.limits import OutOfRangeError
 from planar.geometry.pose import check_pose
 from slam_lite.back_end import BackEnd, ClosureResult, ClosureTask
 from slam_lite.config import MapperSettings

@@ -41,12 +41,12 @@ class InitialPoseSubscriber:
     blocks.
     """
 
-    def __init__(self, shared: LockedLocalizer, tf_bridge: TfBridge, step: LockstepClient):
+    def __init__(self, shared: LockedLocalizer, tf_bridge: TfBridge, lockstep: LockstepClient):
         self._shared, self._tf_bridge = shared, tf_bridge
         self._waiting: Optional[_PendingPose] = None
         self._lock = threading.Lock()
         subscribe("initialpose", PoseWithCovarianceStamped, self._on_initial_pose, queue_size=2)
-        step.every(lambda: RETRY_SECONDS, self._retry, lambda: None)
+        lockstep.every(lambda: RETRY_SECONDS, self._retry, lambda: None)
 
     def handle(self, message: PoseWithCovarianceStamped, force_update: bool) -> None:
         """Handle a pose; with ``force_update`` the next scan is used. An unusable frame is a warning.

@@ -38,7 +38,7 @@ class AmclNode:
     """The node: passes each scan to the Localizer and publishes the result."""
 
     def __init__(self, scan_topic: str = "scan"):
-        self._step = LockstepClient.of_node()
+        self._lockstep = LockstepClient.of_node()
         settings = read_node_settings()
         self._shared = LockedLocalizer(settings)
         _warm_up(settings)
@@ -57,13 +57,13 @@ class AmclNode:
         )
         rospy.Service("global_localization", Empty, self._on_global_localization)
         rospy.Service("request_nomotion_update", Empty, self._on_request_update)
-        poses = InitialPoseSubscriber(self._shared, tf_bridge, self._step)
+        poses = InitialPoseSubscriber(self._shared, tf_bridge, self._lockstep)
         self._map_source = MapSource(self._shared, views.publish_likelihood_field, poses.handle)
         self._watchdog.start()
         rospy.on_shutdown(self._publisher.save_pose)
         self._monitor_inputs()
         SettingsReconfigureServer(settings, self._on_reconfigure)
-        self._step.join(lambda: settings.use_map_topic or self._shared.localizer is not None)
+        self._lockstep.join(lambda: settings.use_map_topic or self._shared.localizer is not None)
 
     def fetch_map(self) -> None:
         """Wait for the map of the service, unless it comes by topic. Raises PlanarError if it is invalid."""
@@ -109,12 +109,12 @@ class AmclNode:
                     self._publisher.publish(localizer, estimate, is_updated, base_in_odom, stamp)
                 except PlanarError as error:
                     rospy.logerr_throttle(SCAN_TIMEOUT_SECONDS, f"scan ignored: {error}")
-        self._step.report(stamp)
+        self._lockstep.report(stamp)
 
     def _on_skipped_scan(self, message, reason):
         rospy.logwarn_throttle(SCAN_TIMEOUT_SECONDS, f"Failed to compute odom pose, skipping scan ({reason})")
         self._watchdog.on_scan()
-        self._step.report(message.header.stamp)
+        self._lockstep.report(message.header.stamp)
 
     def _on_reconfigure(self, values):
         try:

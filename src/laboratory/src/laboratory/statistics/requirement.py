@@ -38,6 +38,6 @@ def parse_requirement(text: str) -> Requirement:
         raise SettingsError(f'--require must be like "success >= 0.99", got {text!r}') from None
     if requirement.figure not in FIGURES:
         raise SettingsError(
-            f"--require: {requirement.figure} is not known{hint_or_choices(requirement.figure, FIGURES)}"
+            f'--require: unknown figure "{requirement.figure}"{hint_or_choices(requirement.figure, FIGURES)}'
         )
     return requirement

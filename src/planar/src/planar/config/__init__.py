@@ -1,1 +1,1 @@
-"""Settings: YAML files and parameters made into checked values."""
+"""Settings: frozen dataclasses read from YAML files and parameters, with checks and documentation."""

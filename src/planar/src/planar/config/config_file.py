@@ -1,15 +1,15 @@
-"""The commented YAML file of a package's parameters, made from the settings that say them.
+"""YAML files that document every parameter of a package, generated from its settings dataclasses.
 
-A package declares the file in its ``config`` module; ``docs/generate.py`` writes it::
+A package declares its files in its ``config`` module; ``docs/generate.py`` writes them::
 
     CONFIG_FILES = {
         "tea.yaml": Section(
             "",
-            TeaSettings,                               # its parameters, in the order of its fields
-            Parameter("cups", 2, "that are filled"),   # one that stands in no settings
+            TeaSettings,                               # its parameters, in the order of the fields
+            Parameter("cups", 2, "number of cups"),    # a parameter outside any settings class
             Section("sugar", SugarSettings),           # a nested table
-            Section("honey", SugarSettings(lumps=0)),  # an object's values instead of the class's defaults
-            Section("syrup", same_as="honey"),         # the same keys and values once more
+            Section("honey", SugarSettings(lumps=0)),  # values of an instance instead of the defaults
+            Section("syrup", same_as="honey"),         # a YAML alias of another section
             about="Every parameter of tea with its default.",
         ),
     }
@@ -22,20 +22,35 @@ import yaml
 from planar.config.parameters import Parameter, parameters_of, with_unit
 
 LINE_LENGTH = 110
-# A longer entry does not push the comments of its neighbours to the right.
+# Longer entries do not shift the column of comments of the other entries.
 LONGEST_ALIGNED = 44
 
 
 class Section:
-    """A table of a YAML file: parameters, and tables below it; ``about`` is a comment."""
+    """A table of a YAML file with its parameters and nested tables.
+
+    Attributes:
+        name: Key of the table; empty for the whole file.
+        parts: Parameters and nested sections in the order of the file.
+        about: Comment of the section.
+        same_as: Name of the section whose values this one repeats, if any.
+    """
 
     def __init__(self, name: str, *parts: Any, about: str = "", same_as: str = ""):
+        """Collect the parts of a section.
+
+        Args:
+            name: Key of the table; empty for the whole file.
+            parts: Parameters, sections, settings classes or instances of settings classes.
+            about: Comment of the section.
+            same_as: Name of another section to be repeated.
+        """
         self.name, self.about, self.same_as = name, about, same_as
         self.parts = tuple(part for given in parts for part in _parts(given))
 
 
 def render_yaml(section: Section) -> str:
-    """The text of the file, whose comments tell unit, meaning and choices."""
+    """Return the text of a configuration file with the unit, meaning and choices of parameters."""
     anchors = {part.same_as for part in section.parts if isinstance(part, Section)}
     lines = [f"# {line}" for line in section.about.splitlines()]
     return "\n".join([*lines, *_lines(section, "", anchors)]) + "\n"
@@ -65,7 +80,7 @@ def _head(section: Section, indent: str, anchors) -> str:
 
 
 def _aligned(group: List[Parameter], indent: str) -> List[str]:
-    """The lines of parameters whose comments begin in one column."""
+    """Return the lines of parameters with their comments aligned in one column."""
     entries = [_entry(part, indent) for part in group]
     lengths = [len(entry[0]) for entry in entries if len(entry[0]) <= LONGEST_ALIGNED]
     column = max(lengths, default=0) + 2
@@ -77,7 +92,7 @@ def _aligned(group: List[Parameter], indent: str) -> List[str]:
 
 
 def _entry(part: Parameter, indent: str) -> List[str]:
-    """A key and its value; a list of tables takes a line for each."""
+    """Return the lines of a key and its value; a list of tables takes one line for each table."""
     if part.required:
         return [f"{indent}# {part.name}"]
     if isinstance(part.default, (list, tuple)) and any(isinstance(item, dict) for item in part.default):
@@ -86,7 +101,7 @@ def _entry(part: Parameter, indent: str) -> List[str]:
 
 
 def _commented(entry: str, comment: str, column: int) -> List[str]:
-    """The entry with its comment beside, and below as far as it is too long for one line."""
+    """Return an entry with its comment beside it, continued on lines below where it is too long."""
     start = max(column, len(entry) + 2)
     lines, words = [""], comment.split()
     for word in words:

@@ -1,11 +1,12 @@
-"""Parameters: fields of settings that know their official name, unit, bounds and meaning.
+"""Parameters: fields of settings dataclasses with official name, unit, bounds and meaning.
 
-They are said once, in the dataclass; lists of them are made from it (planar.config.config_file)::
+The dataclass is the only place where a parameter is described; lists of parameters are generated from it
+(planar.config.config_file)::
 
     @dataclass(frozen=True)
     class TeaSettings:
-        minutes: float = parameter(3.0, "how long it draws", "min", POSITIVE)
-        kind: str = parameter("green", "what is brewed", choices=("green", "black"), name="tea_type")
+        minutes: float = parameter(3.0, "brewing time", "min", POSITIVE)
+        kind: str = parameter("green", "kind of tea", choices=("green", "black"), name="tea_type")
 
         def __post_init__(self):
             check_parameters(self)
@@ -24,7 +25,14 @@ Dynamic = Union[None, bool, float, Tuple[float, float]]
 
 
 class Interval(NamedTuple):
-    """From ``low`` (itself included unless ``without_low``) to ``high``; ``words`` say so in errors."""
+    """Interval of valid numbers.
+
+    Attributes:
+        low: Smallest valid value.
+        high: Largest valid value.
+        words: Description for error messages, e.g. ``positive``; generated from the limits if empty.
+        exclusive_low: Whether ``low`` itself is invalid.
+    """
 
     low: float = -math.inf
     high: float = math.inf
@@ -44,18 +52,27 @@ ZERO_OR_MORE = Interval(0.0, words="zero or more")
 
 
 def at_least(low: float) -> Interval:
+    """Return the interval from ``low`` on."""
     return Interval(low, words=f"at least {low:g}")
 
 
 @dataclasses.dataclass(frozen=True)
 class Parameter:
-    """What there is to know of a parameter.
+    """Description of a parameter.
 
-    ``required``: what it must be ("the path of a file") if it has no default, which then counts as not set.
-    ``dynamic``: whether dynamic_reconfigure may change it while the node runs (True); for a number, the
-    largest value that it then offers, for two, the least and the largest. ``heading``: stands above it where
-    parameters are listed.
-    ``field``: that of the settings, if it is one of theirs.
+    Attributes:
+        name: Official name.
+        default: Default value.
+        meaning: One line for people.
+        unit: Unit, e.g. ``m/s``.
+        bounds: Valid numbers.
+        choices: Valid texts, if only some are valid.
+        required: What the value must be, e.g. ``the path of a file``, if it has no default; ``default`` then
+            means "not set".
+        dynamic: None if dynamic_reconfigure cannot change it; True if it can; a number for the upper limit
+            that dynamic_reconfigure offers, a pair for both limits.
+        heading: Line above the parameter in generated lists.
+        field: Field of the settings dataclass; empty outside one.
     """
 
     name: str
@@ -71,12 +88,13 @@ class Parameter:
 
     @property
     def meaning_and_choices(self) -> str:
-        """The meaning, and behind it the choices unless it names them all."""
+        """Meaning, followed by the choices unless it names all of them."""
         if all(choice in self.meaning for choice in self.choices):
             return self.meaning
         return f"{self.meaning}: {', '.join(self.choices)}"
 
     def with_default(self, default: Any) -> "Parameter":
+        """Return the same parameter with another default."""
         return dataclasses.replace(self, default=default)
 
 
@@ -92,37 +110,55 @@ def parameter(
     dynamic: Dynamic = None,
     heading: str = "",
 ) -> Any:
-    """A field of a settings dataclass that is a parameter; ``name``: the official one, if another.
+    """Make a field of a settings dataclass that is a parameter.
 
-    A subclass that has another default gives just that; the rest is as its base says.
+    A subclass that changes only the default assigns a plain value; the rest is inherited.
+
+    Args:
+        default: Default value.
+        meaning: One line for people.
+        unit: Unit, e.g. ``m/s``.
+        bounds: Valid numbers.
+        name: Official name, if it differs from the name of the field.
+        choices: Valid texts.
+        required: See ``Parameter.required``.
+        dynamic: See ``Parameter.dynamic``.
+        heading: Line above the parameter in generated lists.
+
+    Returns:
+        A ``dataclasses.field``.
     """
-    said = Parameter(name, default, meaning, unit, bounds, tuple(choices), required, dynamic, heading)
-    return dataclasses.field(default=default, metadata={"parameter": said})
+    description = Parameter(name, default, meaning, unit, bounds, tuple(choices), required, dynamic, heading)
+    return dataclasses.field(default=default, metadata={"parameter": description})
 
 
 def parameters_of(kind: type) -> Tuple[Parameter, ...]:
-    """The parameters among the fields of a settings dataclass that can be given, in their order."""
+    """Return the parameters of a settings dataclass in the order of its fields."""
     found = []
     for field in dataclasses.fields(kind):
         if not field.init:
             continue
-        said = _said_of(kind, field.name)
-        if said is not None:
+        description = _description_of(kind, field.name)
+        if description is not None:
             found.append(
                 dataclasses.replace(
-                    said, name=said.name or field.name, default=field.default, field=field.name
+                    description, name=description.name or field.name, default=field.default, field=field.name
                 )
             )
     return tuple(found)
 
 
 def official_names(kind: type) -> Dict[str, str]:
-    """The table official parameter name -> field of a settings dataclass."""
+    """Return a map from official parameter name to field of a settings dataclass."""
     return {each.name: each.field for each in parameters_of(kind)}
 
 
 def check_parameters(settings: Any) -> None:
-    """Raises SettingsError for the first parameter that is not set though required, or out of its bounds."""
+    """Check that required parameters are set and all values are valid; call it in ``__post_init__``.
+
+    Raises:
+        SettingsError: For the first invalid parameter.
+    """
     for each in parameters_of(type(settings)):
         value = getattr(settings, each.field)
         if each.required:
@@ -134,13 +170,13 @@ def check_parameters(settings: Any) -> None:
 
 
 def with_unit(unit: str, text: str) -> str:
-    """The text behind its unit: "[min] how long it draws"."""
+    """Return a text after its unit: ``[min] brewing time``."""
     return f"[{unit}] {text}" if unit else text
 
 
 @dataclasses.dataclass(frozen=True)
 class DynamicParameter:
-    """A value that may be changed while a node runs; its type is that of the ``default``."""
+    """Parameter that can be changed while a node runs; its type is that of ``default``."""
 
     name: str
     default: Any
@@ -151,23 +187,28 @@ class DynamicParameter:
 
 
 def dynamic_parameters_of(kind: type) -> Tuple[DynamicParameter, ...]:
-    """The parameters of a settings dataclass that are dynamic."""
+    """Return the dynamic parameters of a settings dataclass."""
     return tuple(_tunable(each) for each in parameters_of(kind) if each.dynamic is not None)
 
 
-def _tunable(said: Parameter) -> DynamicParameter:
-    low, high = said.bounds.low, math.inf
-    if isinstance(said.dynamic, tuple):
-        low, high = said.dynamic
-    elif said.dynamic is not None and not isinstance(said.dynamic, bool):
-        high = said.dynamic
+def _tunable(description: Parameter) -> DynamicParameter:
+    low, high = description.bounds.low, math.inf
+    if isinstance(description.dynamic, tuple):
+        low, high = description.dynamic
+    elif description.dynamic is not None and not isinstance(description.dynamic, bool):
+        high = description.dynamic
     return DynamicParameter(
-        said.name, said.default, with_unit(said.unit, said.meaning), low, high, said.choices
+        description.name,
+        description.default,
+        with_unit(description.unit, description.meaning),
+        low,
+        high,
+        description.choices,
     )
 
 
-def _said_of(kind: type, field: str):
-    """What the class, or else the nearest of its bases, says of a field."""
+def _description_of(kind: type, field: str):
+    """Return the description of a field from the class or the nearest base that has one."""
     for base in kind.__mro__:
         fields = base.__dict__.get("__dataclass_fields__", {})
         if field in fields and "parameter" in fields[field].metadata:
@@ -182,9 +223,17 @@ T = TypeVar("T")
 
 
 def settings_from_yaml(kind: Type[T], path: Path) -> Tuple[T, List[str]]:
-    """The dataclass ``kind`` (fields made by ``parameter``) filled from a file; the names unknown to it.
+    """Read a settings dataclass from a YAML file, without a parameter server.
 
-    Raises SettingsError.
+    Args:
+        kind: Settings dataclass whose fields are made by ``parameter``.
+        path: YAML file.
+
+    Returns:
+        The settings, and the names in the file that are no parameters of ``kind``.
+
+    Raises:
+        SettingsError: If the file cannot be read or a value is invalid.
     """
     table = read_table(path)
     return settings_from(kind, table.values(), official_names(kind), table.location_of)

@@ -1,4 +1,4 @@
-"""Settings: a flat table of named values made into a frozen dataclass, checked by name and type."""
+"""Settings: frozen dataclasses filled from flat tables, with checks of names and types."""
 
 import dataclasses
 import math
@@ -18,15 +18,24 @@ def settings_from(
     where: Union[str, Callable[[str], str]] = "",
     on_error: Optional[Callable[[str], None]] = None,
 ) -> Tuple[T, List[str]]:
-    """The dataclass ``kind`` filled from ``values``; what ``values`` leaves out keeps its default.
+    """Fill a settings dataclass from named values; values that are missing keep their defaults.
 
-    ``names`` maps a name in ``values`` to a field of ``kind`` (a field's own name needs no entry).
-    ``where`` is put before each name in error texts, e.g. ``/amcl/``; it may depend on the name.
-    Returns the settings and the names that ``kind`` does not know. Raises SettingsError for a value of a
-    wrong type, or tells it to ``complain``, if that is given, and goes on as if the value were not there;
-    ``kind.__post_init__`` may raise it for a senseless one.
     Old names of parameters are accepted with a FutureWarning if ``kind.DEPRECATED_PARAMETERS`` maps them to
     the fields that replace them.
+
+    Args:
+        kind: Settings dataclass.
+        values: Values by official name.
+        names: Official name -> field, for names that differ.
+        where: Prefix of names in error messages, e.g. ``/amcl/``, or a function from name to prefix.
+        on_error: Called with the message for a value of a wrong type, which then counts as not set; by
+            default such a value is an error.
+
+    Returns:
+        The settings, and the names in ``values`` that ``kind`` does not have.
+
+    Raises:
+        SettingsError: For a value of a wrong type, or from ``kind.__post_init__`` for an invalid one.
     """
     location_of = where if callable(where) else lambda _name: where
     types = typing.get_type_hints(kind)
@@ -60,7 +69,11 @@ def settings_from(
 
 
 def check(condition: bool, name: str, requirement: str, value: Any) -> None:
-    """Raises SettingsError "<name> must be <requirement>, got <value>" unless ``condition`` holds."""
+    """Check a setting.
+
+    Raises:
+        SettingsError: ``<name> must be <requirement>, got <value>``, unless ``condition`` holds.
+    """
     if not condition:
         raise SettingsError(f"{name} must be {requirement}, got {value!r}")
 

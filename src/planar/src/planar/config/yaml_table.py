@@ -1,4 +1,4 @@
-"""Tables out of YAML files; every mistake in them is told with file, line and key."""
+"""Tables from YAML files; errors contain file, line and key."""
 
 import math
 from pathlib import Path
@@ -11,20 +11,28 @@ from planar.errors import PlanarError, SettingsError
 from planar.files.reading import read_text
 
 _REQUIRED: Any = object()
-# No table that people write is nearly as large.
+# Far more than any table written by hand.
 MAX_BYTES = 4 << 20
 _TAG = "tag:yaml.org,2002:"
-# None: what stands for all others, by refusing them.
+# None stands for all other tags, which are refused.
 _KNOWN = {None, *(_TAG + kind for kind in ("null", "bool", "int", "float", "str", "seq", "map"))}
 
 
 def read_table(
     path, error: Type[PlanarError] = SettingsError, missing: Optional[Type[PlanarError]] = None
 ) -> "Table":
-    """The table that a YAML file holds.
+    """Read a YAML file that holds a table.
 
-    Raises ``missing`` (by default ``error``) if there is no such file, else ``error``, here and for whatever
-    is wrong with a value read from the table later on.
+    Args:
+        path: File.
+        error: Class of the errors for invalid content, also for values read from the table later.
+        missing: Class of the error if there is no such file; by default ``error``.
+
+    Returns:
+        The outermost table.
+
+    Raises:
+        PlanarError: ``missing`` or ``error``, see above.
     """
     path = Path(path)
     try:
@@ -37,7 +45,19 @@ def read_table(
 
 
 def parse_table(text: str, source: str, error: Type[PlanarError] = SettingsError) -> "Table":
-    """The table that a YAML text holds; ``source`` is what errors call the text. Raises ``error``."""
+    """Parse a YAML text that holds a table.
+
+    Args:
+        text: YAML.
+        source: Name of the text in error messages.
+        error: Class of the errors, also for values read from the table later.
+
+    Returns:
+        The outermost table.
+
+    Raises:
+        PlanarError: ``error``, if the text is not valid.
+    """
     try:
         loader = _Loader(text)
         node = loader.get_single_node()
@@ -54,7 +74,7 @@ def parse_table(text: str, source: str, error: Type[PlanarError] = SettingsError
 
 
 class _Loader(yaml.SafeLoader):
-    """Knows what JSON knows, of which settings are made: keys and dates are texts; no bytes, no sets."""
+    """YAML loader restricted to the types of JSON: keys and dates are texts, binary data and sets errors."""
 
     yaml_constructors = {
         tag: constructor for tag, constructor in yaml.SafeLoader.yaml_constructors.items() if tag in _KNOWN
@@ -70,7 +90,7 @@ class _Loader(yaml.SafeLoader):
 
 
 class _Document:
-    """What all tables of one text share."""
+    """State shared by all tables of one text."""
 
     def __init__(self, source: str, loader: yaml.SafeLoader, error: Type[PlanarError]):
         self.source, self.loader, self.error = source, loader, error
@@ -83,10 +103,12 @@ class _Document:
 
 
 class Table:
-    """A table of a YAML text that knows the line of each of its values. Its methods raise the text's error.
+    """Table of a YAML text that knows the line of each value.
 
-    ``name``: the keys that lead to it, joined by dots; empty for the outermost one.
-    A key without a value counts as missing.
+    Its methods raise the error class of the text. A key without a value counts as missing.
+
+    Attributes:
+        name: Keys that lead to the table, joined by dots; empty for the outermost table.
     """
 
     def __init__(self, document: _Document, node: yaml.MappingNode, name: str):
@@ -96,7 +118,7 @@ class Table:
         try:
             document.loader.flatten_mapping(node)
         except yaml.YAMLError:
-            raise document.error_at(node, "'<<' merges no table") from None
+            raise document.error_at(node, "'<<' must merge a table") from None
         for key, value in node.value:
             self._entries[key.value] = (key, value)
 
@@ -107,61 +129,62 @@ class Table:
         return self.value(key) is not None
 
     def value(self, key: str) -> Any:
-        """Whatever stands there, as plain Python objects; None if it is missing."""
+        """Return the value of a key as plain Python objects; None if it is missing."""
         if key not in self._entries:
             return None
         try:
             return self._document.loader.construct_object(self._entries[key][1], deep=True)
         except (yaml.YAMLError, ValueError, OverflowError, RecursionError) as problem:
             what = getattr(problem, "problem", None) or problem
-            raise self.error_at(key, f"cannot be understood ({what})") from None
+            raise self.error_at(key, f"cannot be parsed ({what})") from None
 
     def values(self) -> Dict[str, Any]:
-        """The whole table as plain Python objects."""
+        """Return the whole table as plain Python objects."""
         return {key: self.value(key) for key in self}
 
     def number(self, key: str, default: float = _REQUIRED) -> float:
-        """A finite number."""
+        """Return a finite number."""
         return self._as_number(key, self._needed(key, default))
 
     def numbers(self, key: str, names: str) -> Tuple[float, ...]:
-        """A list of finite numbers, as many as ``names`` names, e.g. "x, y, yaw"."""
+        """Return a list of finite numbers, as many as ``names`` lists, e.g. ``x, y, yaw``."""
         values = self._needed(key)
         if not isinstance(values, list) or len(values) != len(names.split(", ")):
             raise self.error_at(key, f"must be [{names}], got {values!r}")
         return tuple(self._as_number(key, value) for value in values)
 
     def count(self, key: str, default: int = _REQUIRED) -> int:
-        """A whole number from 1."""
+        """Return an integer of at least 1."""
         value = self._needed(key, default)
         if isinstance(value, bool) or not isinstance(value, int) or value < 1:
             raise self.error_at(key, f"must be a whole number from 1, got {value!r}")
         return value
 
     def flag(self, key: str, default: bool = _REQUIRED) -> bool:
+        """Return a boolean."""
         value = self._needed(key, default)
         if not isinstance(value, bool):
             raise self.error_at(key, f"must be true or false, got {value!r}")
         return value
 
     def text(self, key: str, default: str = _REQUIRED) -> str:
-        """A name or other text that is not empty; a number counts as a text."""
+        """Return a text that is not empty; a number counts as a text."""
         value = self._needed(key, default)
         if isinstance(value, (bool, dict, list)) or not str(value).strip():
             raise self.error_at(key, f"must be a text, got {value!r}")
         return str(value)
 
     def path(self, key: str, folder: Path) -> Path:
-        """Where the file or folder is that is named there, as seen from ``folder``; there may be none."""
+        """Return the absolute path of a file or folder, relative to ``folder``; it need not exist."""
         try:
             path = (folder / Path(self.text(key)).expanduser()).resolve()
             path.exists()
         except (OSError, ValueError, RuntimeError) as problem:
-            raise self.error_at(key, f"can be no file or folder ({problem})") from None
+            raise self.error_at(key, f"is not a valid path ({problem})") from None
         return path
 
     def texts(self, key: str) -> List[str]:
-        """A list of texts, or a single one; none if the key is missing."""
+        """Return a list of texts; a single text is a list of one, a missing key an empty list."""
         values = self.value(key) or []
         values = values if isinstance(values, list) else [values]
         if any(isinstance(value, (bool, dict, list)) or value is None for value in values):
@@ -169,13 +192,14 @@ class Table:
         return [str(value) for value in values]
 
     def choice(self, key: str, choices: Iterable[str], default: str = _REQUIRED) -> str:
+        """Return a text that must be one of ``choices``."""
         value = self._needed(key, default)
         if not isinstance(value, str) or value not in choices:
             raise self.error_at(key, f"must be one of {', '.join(choices)}, got {value!r}")
         return value
 
     def table(self, key: str) -> "Table":
-        """The table below ``key``."""
+        """Return the table under a key."""
         self._needed(key)
         node = self._entries[key][1]
         if not isinstance(node, yaml.MappingNode):
@@ -183,7 +207,7 @@ class Table:
         return Table(self._document, node, self._full(key))
 
     def tables(self, key: str) -> List["Table"]:
-        """The list of tables below ``key``; none if the key is missing."""
+        """Return the list of tables under a key; empty if the key is missing."""
         node = self._entries[key][1] if key in self else yaml.SequenceNode("", [])
         if not isinstance(node, yaml.SequenceNode):
             raise self.error_at(key, "must be a list of tables")
@@ -197,23 +221,27 @@ class Table:
         ]
 
     def allow_only(self, *known: str) -> None:
-        """Complains of the first key that is none of ``known``."""
-        for key in self:
-            if key not in known:
-                raise self.error_at(key, f"is not known{hint_or_choices(key, known)}")
+        """Raise an error that names every key that is not in ``known``, one a line."""
+        unknown = [key for key in self if key not in known]
+        if unknown:
+            raise self._document.error("\n".join(self._unknown(key, known) for key in unknown))
 
     def check(self, condition: bool, key: str, requirement: str) -> None:
-        """Complains that ``key`` must be ``requirement`` unless ``condition`` holds."""
+        """Raise the error ``<key> must be <requirement>`` unless a condition holds."""
         if not condition:
             raise self.error_at(key, f"must be {requirement}, got {self.value(key)!r}")
 
     def error_at(self, key: str, text: str) -> PlanarError:
-        """The error "<file>:<line>: <key> <text>"; the line is the table's own if it lacks the key."""
+        """Return the error ``<file>:<line>: <key> <text>``; without the key the line is that of the table."""
         return self._document.error_at(self._node_of(key), f"{self._full(key)} {text}")
 
     def location_of(self, key: str) -> str:
-        """What stands before ``key`` in a complaint: file, line, and the keys that lead to it."""
+        """Return the prefix of ``key`` in error messages: file, line, and the keys that lead to it."""
         return self._document.location_of(self._node_of(key)) + self._full("")
+
+    def _unknown(self, key: str, known: Iterable[str]) -> str:
+        location = self._document.location_of(self._node_of(key))
+        return f'{location}unknown key "{self._full(key)}"{hint_or_choices(key, known)}'
 
     def _node_of(self, key: str) -> yaml.Node:
         return self._entries[key][0] if key in self._entries else self._node
@@ -230,7 +258,7 @@ class Table:
         return default
 
     def _as_number(self, key: str, value: Any) -> float:
-        try:  # 1e-3 is a text in YAML 1.1
+        try:  # YAML 1.1 reads 1e-3 as a text
             number = float(value)
         except (TypeError, ValueError, OverflowError):
             number = math.nan
@@ -240,7 +268,7 @@ class Table:
 
 
 def _check_keys(document: _Document, root: yaml.Node) -> None:
-    """Complains of keys that are no texts, or given twice, of which YAML libraries silently take the last."""
+    """Raise an error for keys that are no texts, or duplicates, of which YAML libraries use the last."""
     waiting: List[yaml.Node] = [root]
     met: Set[int] = set()
     while waiting:
@@ -255,7 +283,7 @@ def _check_keys(document: _Document, root: yaml.Node) -> None:
         for key, value in node.value:
             waiting.append(value)
             if not isinstance(key, yaml.ScalarNode):
-                raise document.error_at(key, "a key must be a plain text")
+                raise document.error_at(key, "keys must be texts")
             if key.value in seen:
-                raise document.error_at(key, f"{key.value} is given twice, first in line {seen[key.value]}")
+                raise document.error_at(key, f'duplicate key "{key.value}", first in line {seen[key.value]}')
             seen[key.value] = key.start_mark.line + 1

@@ -1,1 +1,1 @@
-"""What is written to disk: whole or not at all."""
+"""Reading files with limits, writing them atomically."""

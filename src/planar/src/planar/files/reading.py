@@ -1,4 +1,4 @@
-"""Files read with limits: regular ones only, so that no reader waits for a pipe, and none too large."""
+"""Reading of regular files with a size limit; pipes and devices are refused, as reading them may block."""
 
 import errno
 import io
@@ -11,14 +11,22 @@ from typing import Dict
 import numpy as np
 
 MAX_BYTES = 256 << 20
-# Of arrays when they are unpacked.
+# Size of the arrays of one file after decompression.
 MAX_UNPACKED_BYTES = 1 << 30
 
 
 def read_bytes(path, most: int = MAX_BYTES) -> bytes:
-    """The content of a regular file. Raises OSError, whose ``strerror`` says what is wrong."""
+    """Return the content of a regular file.
+
+    Args:
+        path: File.
+        most: Size limit [bytes].
+
+    Raises:
+        OSError: If it cannot be read; ``strerror`` states the reason.
+    """
     if "\0" in str(path):
-        raise OSError(errno.EINVAL, "no name that a file can have", str(path))
+        raise OSError(errno.EINVAL, "not a valid file name", str(path))
     descriptor = os.open(str(path), os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
     with os.fdopen(descriptor, "rb") as file:
         status = os.fstat(descriptor)
@@ -33,12 +41,12 @@ def read_bytes(path, most: int = MAX_BYTES) -> bytes:
 
 
 def read_text(path, most: int = MAX_BYTES, errors: str = "strict") -> str:
-    """The text of a regular file in UTF-8. Raises OSError, or UnicodeDecodeError."""
+    """Return the text of a regular file in UTF-8. Raises OSError or UnicodeDecodeError."""
     return read_bytes(path, most).decode("utf-8", errors).replace("\r\n", "\n")
 
 
 def exists(path: Path) -> bool:
-    """Whether there is such a file or folder; a name that no file can have is none."""
+    """Return whether there is such a file or folder; False for invalid names."""
     try:
         return path.exists()
     except (OSError, ValueError):
@@ -46,12 +54,12 @@ def exists(path: Path) -> bool:
 
 
 def is_file(path: Path) -> bool:
-    """Whether there is such a regular file."""
+    """Return whether there is such a regular file."""
     return exists(path) and path.is_file()
 
 
 def read_arrays(path) -> Dict[str, np.ndarray]:
-    """The arrays of an .npz file, without objects. Raises OSError, or ValueError for what is none."""
+    """Return the arrays of an .npz file, without objects. Raises OSError or, for bad content, ValueError."""
     content = io.BytesIO(read_bytes(path))
     try:
         with zipfile.ZipFile(content) as archive:
@@ -61,15 +69,15 @@ def read_arrays(path) -> Dict[str, np.ndarray]:
         with np.load(content, allow_pickle=False) as file:
             arrays = dict(file)
         for name, array in arrays.items():
-            if not isinstance(array, np.ndarray):  # numpy gives the bytes of what is none
-                raise ValueError(f"{name} is no array")
+            if not isinstance(array, np.ndarray):  # numpy returns other members as bytes
+                raise ValueError(f"{name} is not an array")
         return arrays
-    except Exception as error:  # what zipfile, zlib and numpy raise for broken files has no common class
+    except Exception as error:  # errors of zipfile, zlib and numpy have no common class
         raise ValueError(str(error) or type(error).__name__) from None
 
 
 def read_array(path) -> np.ndarray:
-    """The array of an .npy file, without objects. Raises OSError, or ValueError for what is none."""
+    """Return the array of an .npy file, without objects. Raises OSError or, for bad content, ValueError."""
     content = io.BytesIO(read_bytes(path))
     try:
         return np.asarray(np.lib.format.read_array(content, allow_pickle=False))

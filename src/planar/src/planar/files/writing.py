@@ -1,4 +1,4 @@
-"""Files written whole or not at all."""
+"""Atomic writing of files, and trajectories in the TUM format."""
 
 import math
 import os
@@ -8,22 +8,26 @@ from typing import Dict, Iterable, Mapping
 
 import numpy as np
 
-from planar.errors import PlanarError
-
-
-class FileWriteError(PlanarError):
-    """A file cannot be written; what was there before still is. The text names it."""
+from planar.errors import FileWriteError
 
 
 def write_atomically(path, data: bytes) -> None:
-    """Writes beside ``path``, then renames, so that no reader sees half a file. Raises FileWriteError."""
+    """Write a temporary file beside ``path`` and rename it, so that readers never see a partial file.
+
+    Raises:
+        FileWriteError: If it cannot be written; the old file is kept.
+    """
     write_all_atomically({Path(path): [data]})
 
 
 def write_all_atomically(files: Mapping[Path, Iterable[bytes]]) -> None:
-    """Writes all files beside their paths, then renames them: on a full disk the old ones stay.
+    """Write several files beside their paths, then rename all of them; on a full disk the old files are kept.
 
-    Each is told in chunks, so that one which is made while it is written need not be held in memory.
+    Args:
+        files: Content of each file in chunks, so that large files need not be held in memory.
+
+    Raises:
+        FileWriteError: If one of them cannot be written.
     """
     written: Dict[Path, Path] = {}
     try:
@@ -43,7 +47,11 @@ def write_all_atomically(files: Mapping[Path, Iterable[bytes]]) -> None:
 
 
 def tum_text(stamped_poses: np.ndarray) -> str:
-    """Stamps and poses (N, 4) as lines ``t x y z qx qy qz qw`` (the TUM format, which evo reads)."""
+    """Return a trajectory in the TUM format, which evo reads: lines ``t x y z qx qy qz qw``.
+
+    Args:
+        stamped_poses: Stamps [s] and poses, (N, 4) ``[t, x, y, yaw]``.
+    """
     return "".join(
         f"{t:.9f} {x:.6f} {y:.6f} 0 0 0 {math.sin(yaw / 2.0):.9f} {math.cos(yaw / 2.0):.9f}\n"
         for t, x, y, yaw in stamped_poses

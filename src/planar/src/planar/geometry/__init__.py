@@ -1,1 +1,1 @@
-"""Poses, scans and rays in the plane."""
+"""Poses, grids, scans and ray casting in the plane."""

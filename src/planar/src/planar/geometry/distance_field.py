@@ -1,7 +1,7 @@
-"""Distances to the nearest obstacle, the base of likelihood fields and inflation.
+"""Exact Euclidean distance transform of obstacle grids, used by likelihood fields and inflation.
 
-Exact, in two passes (Meijster, Roerdink and Hesselink, "A general algorithm for computing distance transforms
-in linear time", 2000).
+Two passes (Meijster, Roerdink and Hesselink, "A general algorithm for computing distance transforms in linear
+time", 2000).
 """
 
 import math
@@ -11,10 +11,15 @@ import numpy as np
 
 
 def distance_field(obstacles: np.ndarray, resolution: float, max_distance: float = np.inf) -> np.ndarray:
-    """Euclidean distance, metres, from each cell centre to the nearest obstacle cell's centre.
+    """Compute the distance from each cell centre to the centre of the nearest obstacle cell.
 
-    ``obstacles``: bool (rows, cols). Returns float32 (rows, cols), clipped to ``max_distance``;
-    all ``max_distance`` where there is no obstacle at all.
+    Args:
+        obstacles: Occupied cells, bool (rows, cols).
+        resolution: Cell size [m].
+        max_distance: Upper limit of the result [m]; also the result where there is no obstacle at all.
+
+    Returns:
+        Distances [m], float32 (rows, cols).
     """
     if not obstacles.any():
         return np.full(obstacles.shape, max_distance, dtype=np.float32)
@@ -24,7 +29,7 @@ def distance_field(obstacles: np.ndarray, resolution: float, max_distance: float
 
 @numba.njit(cache=True)
 def _cells_along_columns(obstacles):
-    """Cells, int32, to an obstacle of the same column; more than any distance where there is none."""
+    """Return cells, int32, to an obstacle in the same column; rows + cols where there is none."""
     rows, cols = obstacles.shape
     near = np.empty((rows, cols), dtype=np.int32)
     distances = np.full(cols, rows + cols, dtype=np.int32)
@@ -40,10 +45,10 @@ def _cells_along_columns(obstacles):
 
 @numba.njit(cache=True)
 def _squares_along_rows(near):
-    """Squares, int64 (rows, cols), of the cells to an obstacle; ``near``: cells to one of the same column."""
+    """Return squared distances in cells, int64 (rows, cols); ``near``: cells to an obstacle in the column."""
     rows, cols = near.shape
     squares = np.empty((rows, cols), dtype=np.int64)
-    # Obstacles that are nearest to some cell of the row, and the first cell for which each is.
+    # Columns whose obstacle is nearest to some cell of the row, and the first such cell of each.
     sources, firsts, own = np.empty(cols, np.int64), np.empty(cols, np.int64), np.empty(cols, np.int64)
     for row in range(rows):
         for col in range(cols):
@@ -75,7 +80,7 @@ def _square(own, col, source):
 
 @numba.njit(cache=True)
 def _metres(squares, resolution, max_distance):
-    """Distances, float32 (rows, cols), at most ``max_distance``, of the squares of as many cells."""
+    """Return distances in metres, float32 (rows, cols), at most ``max_distance``, from squares in cells."""
     metres = np.empty(squares.shape, dtype=np.float32)
     for row in range(squares.shape[0]):
         for col in range(squares.shape[1]):

@@ -1,12 +1,12 @@
-"""Occupancy grids: what is known of free and occupied space."""
+"""Occupancy grids."""
 
 from dataclasses import dataclass, field
 from typing import Iterable
 
 import numpy as np
 
-from planar.errors import PlanarError
-from planar.geometry.limits import MAX_RESOLUTION, MIN_RESOLUTION, OutOfRangeError
+from planar.errors import OutOfRangeError, PlanarError
+from planar.geometry.limits import MAX_RESOLUTION, MIN_RESOLUTION
 from planar.geometry.pose import Pose2
 
 FREE = 0
@@ -16,10 +16,15 @@ UNKNOWN = -1
 
 @dataclass(frozen=True, eq=False)
 class OccupancyGrid:
-    """A grid of cells with the meaning of nav_msgs/OccupancyGrid.
+    """Occupancy grid with the semantics of nav_msgs/OccupancyGrid.
 
-    ``cells``: int8 (rows, cols), 0 free to 100 occupied, -1 unknown; row 0 is the lowest y.
-    ``resolution``: metres per cell. ``origin``: pose in the map of the lower left corner of cell (0, 0).
+    Attributes:
+        cells: Occupancy, int8 (rows, cols): 0 free to 100 occupied, -1 unknown; row 0 has the lowest y.
+        resolution: Cell size [m].
+        origin: Pose in the map of the lower left corner of cell (0, 0).
+
+    Raises:
+        PlanarError: If the shape, resolution or origin is invalid.
     """
 
     cells: np.ndarray
@@ -32,7 +37,7 @@ class OccupancyGrid:
         if not self.resolution > 0.0:
             raise PlanarError(f"a grid needs a positive resolution, got {self.resolution}")
         if not (MIN_RESOLUTION <= self.resolution <= MAX_RESOLUTION and self.origin.is_in_range()):
-            raise OutOfRangeError(f"a grid of {self.resolution:g} m a cell at {self.origin} means nothing")
+            raise OutOfRangeError(f"invalid grid: cells of {self.resolution:g} m at {self.origin}")
 
     @property
     def rows(self) -> int:
@@ -44,36 +49,47 @@ class OccupancyGrid:
 
     @property
     def in_bands(self) -> "BandedGrid":
-        """The same, in one band."""
+        """The grid as a BandedGrid with one band."""
         return BandedGrid(self.rows, self.cols, self.resolution, self.origin, [self.cells])
 
     def cells_of(self, points_xy) -> np.ndarray:
-        """Cells (N, 2) int64 as (row, col) in which map points (N, 2) lie; they may be outside the grid."""
+        """Convert map points to cells.
+
+        Args:
+            points_xy: Points in the map [m], (N, 2).
+
+        Returns:
+            Cells as (row, col), int64 (N, 2); they may be outside the grid.
+        """
         local_xy = self.origin.inverse().transform_points(np.atleast_2d(np.asarray(points_xy, dtype=float)))
         return np.floor(local_xy[:, ::-1] / self.resolution).astype(np.int64)
 
     def points_of(self, row_col: np.ndarray) -> np.ndarray:
-        """Centres (N, 2) in the map of cells (N, 2) given as (row, col)."""
+        """Return the centres of cells in the map [m], (N, 2), from (row, col) indices (N, 2)."""
         local_xy = (np.atleast_2d(row_col)[:, ::-1] + 0.5) * self.resolution
         return self.origin.transform_points(local_xy)
 
     def contains(self, row_col: np.ndarray) -> np.ndarray:
-        """Which of the cells (N, 2) lie in the grid: bool (N,)."""
+        """Return which cells (N, 2) are in the grid, bool (N,)."""
         row, col = np.atleast_2d(row_col).T
         return (row >= 0) & (row < self.rows) & (col >= 0) & (col < self.cols)
 
     def value_at(self, x: float, y: float) -> int:
-        """Value of the cell at a map point; unknown outside the grid."""
+        """Return the value of the cell at a map point; UNKNOWN outside the grid."""
         cell = self.cells_of(np.array([[x, y]]))
         return int(self.cells[tuple(cell[0])]) if self.contains(cell)[0] else UNKNOWN
 
 
 @dataclass(frozen=True, eq=False)
 class BandedGrid:
-    """An OccupancyGrid that is larger than memory should be, had in bands of its rows, once.
+    """Occupancy grid too large for memory, available once as bands of rows.
 
-    ``bands``: cells int8 (some rows, cols), the top band first, in each of which row 0 has the lowest y.
-    ``rows``, ``cols``, ``resolution``, ``origin``: of the whole grid.
+    Attributes:
+        rows: Number of rows of the whole grid.
+        cols: Number of columns of the whole grid.
+        resolution: Cell size [m].
+        origin: Pose in the map of the lower left corner of cell (0, 0).
+        bands: Cells int8 (some rows, cols), top band first; row 0 of each band has its lowest y.
     """
 
     rows: int
@@ -83,7 +99,7 @@ class BandedGrid:
     bands: Iterable[np.ndarray]
 
     def assemble(self) -> OccupancyGrid:
-        """The whole grid."""
+        """Return the whole grid."""
         cells, end = np.empty((self.rows, self.cols), dtype=np.int8), self.rows
         for band in self.bands:
             cells[end - len(band) : end] = band
@@ -92,7 +108,13 @@ class BandedGrid:
 
 
 def grid_from_picture(picture: str, resolution: float = 1.0, origin: Pose2 = Pose2()) -> OccupancyGrid:
-    """A grid drawn as text, top row first: ``#`` occupied, ``.`` or space free, ``?`` unknown."""
+    """Make a grid from text, top row first.
+
+    Args:
+        picture: ``#`` occupied, ``.`` or space free, ``?`` unknown.
+        resolution: Cell size [m].
+        origin: Pose in the map of the lower left corner.
+    """
     lines = picture.strip("\n").splitlines()
     width = max(len(line) for line in lines)
     meaning = {"#": OCCUPIED, ".": FREE, " ": FREE, "?": UNKNOWN}

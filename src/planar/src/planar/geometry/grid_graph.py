@@ -1,21 +1,27 @@
-"""Cells as a graph, for the lengths of shortest ways."""
+"""Graph of free grid cells for the lengths of shortest paths."""
 
 import math
 from typing import Any
 
 import numpy as np
 
-# Steps to half of a cell's neighbours on three rings; the others are the same backwards. Their ways are at
-# most 1.4 % longer than straight ones.
+# Steps to half of a cell's neighbours on three rings; the other half is symmetric. Paths of these steps are
+# at most 1.4 % longer than straight lines.
 STEPS = ((0, 1), (1, 0), (1, 1), (1, -1), (1, 2), (2, 1), (1, -2), (2, -1), (1, 3), (3, 1), (1, -3), (3, -1))
 
 
 def grid_graph(is_open: np.ndarray, resolution: float) -> Any:
-    """Steps between open cells, bool (rows, cols), and their lengths, metres; undirected, as scipy's csr.
+    """Make the graph of steps between free cells.
 
-    The cell (row, col) is the node ``row * cols + col``.
+    Args:
+        is_open: Free cells, bool (rows, cols).
+        resolution: Cell size [m].
+
+    Returns:
+        Undirected graph of step lengths [m], a scipy csr matrix; cell (row, col) is node ``row * cols +
+        col``.
     """
-    from scipy.sparse import coo_matrix  # late: few need ways
+    from scipy.sparse import coo_matrix  # imported late: few users need it
 
     numbers = np.arange(is_open.size).reshape(is_open.shape)
     rows, cols = is_open.shape

@@ -10,9 +10,16 @@ from planar.geometry.pose import Pose2
 
 
 def cast_rays(grid: OccupancyGrid, laser_in_map: Pose2, angles: np.ndarray, max_range: float) -> np.ndarray:
-    """Range, metres, from ``laser_in_map`` to the first occupied cell along each angle.
+    """Cast rays from one pose to the first occupied cell.
 
-    ``angles``: (N,), in the laser frame. Returns float64 (N,); ``max_range`` where nothing is met.
+    Args:
+        grid: Map.
+        laser_in_map: Start of the rays.
+        angles: Directions in the laser frame [rad], (N,).
+        max_range: Result where nothing is hit [m].
+
+    Returns:
+        Ranges [m], float64 (N,).
     """
     start = grid.origin.inverse() @ laser_in_map
     return (
@@ -39,8 +46,8 @@ def _cast(cells, x, y, angles, max_cells, occupied):
 @numba.njit(cache=True)
 def _cast_one(cells, x, y, dx, dy, max_cells, occupied):
     rows, cols = cells.shape
-    first, last = _way_through(cols, x, dx)
-    first_row, last_row = _way_through(rows, y, dy)
+    first, last = _span_inside(cols, x, dx)
+    first_row, last_row = _span_inside(rows, y, dy)
     first, last = max(first, first_row, 0.0), min(last, last_row, max_cells)
     x, y = (x + first * dx, y + first * dy) if first > 0.0 and first < last else (x, y)
     col, row = math.floor(x), math.floor(y)
@@ -61,8 +68,8 @@ def _cast_one(cells, x, y, dx, dy, max_cells, occupied):
 
 
 @numba.njit(cache=True)
-def _way_through(cells, start, step):
-    """From where to where along a ray, in cells, one coordinate may lie in the grid, and a little beyond."""
+def _span_inside(cells, start, step):
+    """Return the part of a ray, in cells, in which one coordinate is in the grid, with a small margin."""
     if step == 0.0:
         return (-np.inf, np.inf) if -1.0 <= start <= cells + 1.0 else (np.inf, -np.inf)
     one, other = -start / step, (cells - start) / step
@@ -72,7 +79,17 @@ def _way_through(cells, start, step):
 def cast_rays_from_many(
     grid: OccupancyGrid, lasers_in_map: np.ndarray, angles: np.ndarray, max_range: float
 ) -> np.ndarray:
-    """Ranges (N, M), metres, from each of the poses (N, 3) along each of the angles (M,) in its frame."""
+    """Cast rays from many poses.
+
+    Args:
+        grid: Map.
+        lasers_in_map: Poses, (N, 3) ``[x, y, yaw]``.
+        angles: Directions in the frame of each pose [rad], (M,).
+        max_range: Result where nothing is hit [m].
+
+    Returns:
+        Ranges [m], float64 (N, M).
+    """
     in_grid = np.empty((len(lasers_in_map), 3))
     in_grid[:, :2] = grid.origin.inverse().transform_points(lasers_in_map[:, :2]) / grid.resolution
     in_grid[:, 2] = lasers_in_map[:, 2] - grid.origin.yaw

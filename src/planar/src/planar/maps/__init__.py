@@ -1,1 +1,1 @@
-"""Occupancy grids, their files, and places in them."""
+"""Map files, map quality, and named places."""

@@ -1,4 +1,4 @@
-"""Map files: the YAML and image pair of map_server (contract of ROS 1 navigation 1.17)."""
+"""Map files: the YAML and image pair of map_server (interface of ROS 1 navigation 1.17)."""
 
 import io
 from pathlib import Path
@@ -16,7 +16,7 @@ from planar.geometry.pose import Pose2
 
 MODES = ("trinary", "scale", "raw")
 MAX_PIXELS = 100_000_000
-# How a file begins that Git LFS keeps elsewhere.
+# First bytes of a Git LFS pointer file.
 LFS_POINTER = b"version https://git-lfs"
 
 
@@ -25,7 +25,7 @@ class MapFileError(PlanarError):
 
 
 class MapMissingError(MapFileError):
-    """There is no such map file."""
+    """The map file does not exist."""
 
 
 class MapImageError(MapFileError):
@@ -33,11 +33,15 @@ class MapImageError(MapFileError):
 
 
 class MapDescriptionError(MapFileError):
-    """The YAML file of a map cannot be read, or a key of it is missing or senseless."""
+    """The YAML file of a map is invalid."""
 
 
 def load_map(path) -> OccupancyGrid:
-    """The grid described by a map_server YAML file. Raises MapFileError."""
+    """Load the map that a map_server YAML file describes.
+
+    Raises:
+        MapFileError: If the YAML file or the image is missing or invalid.
+    """
     path = Path(path)
     table = read_table(path, error=MapDescriptionError, missing=MapMissingError)
     resolution = table.number("resolution")
@@ -55,18 +59,32 @@ def load_map(path) -> OccupancyGrid:
         mode=mode,
     )
     origin = Pose2(*table.numbers("origin", "x, y, yaw"))
-    table.check(origin.is_in_range(), "origin", "a place at which a map can lie")
+    table.check(origin.is_in_range(), "origin", "finite and within range")
     return OccupancyGrid(cells, resolution, origin)
 
 
 def cells_from_image(
     image_path, negate=False, occupied_thresh=0.65, free_thresh=0.196, mode="trinary"
 ) -> np.ndarray:
-    """Cells int8 (rows, cols), row 0 lowest, of an image read as map_server reads it."""
+    """Convert a map image to occupancy as map_server does.
+
+    Args:
+        image_path: Image in any format of Pillow.
+        negate: Whether white is occupied.
+        occupied_thresh: Occupancy above which a cell is occupied, 0 to 1.
+        free_thresh: Occupancy below which a cell is free, 0 to 1.
+        mode: ``trinary``, ``scale`` or ``raw``.
+
+    Returns:
+        Cells, int8 (rows, cols), row 0 lowest.
+
+    Raises:
+        MapImageError: If the image cannot be read.
+    """
     pixels = _pixels(image_path)
     channels = pixels if mode == "trinary" else pixels[:, :, :3]
     sums = np.flipud(channels.sum(axis=2, dtype=np.uint16))
-    # Of each sum that there may be, which are far fewer than pixels.
+    # A table over the possible sums, which are far fewer than the pixels.
     shade = np.arange(255 * channels.shape[2] + 1) / channels.shape[2]
     if negate:
         shade = 255.0 - shade
@@ -87,31 +105,42 @@ def cells_from_image(
 
 
 def _pixels(image_path) -> np.ndarray:
-    """Those of an image, uint8 (rows, cols, 3), or with transparency (rows, cols, 4)."""
-    from PIL import Image, UnidentifiedImageError  # late: who only writes maps need not have it in memory
+    """Return the pixels of an image, uint8 (rows, cols, 3), or (rows, cols, 4) with transparency."""
+    from PIL import Image, UnidentifiedImageError  # imported late: writing maps does not need it
 
-    Image.MAX_IMAGE_PIXELS = None  # it would warn of less than MAX_PIXELS
+    Image.MAX_IMAGE_PIXELS = None  # its own limit is lower than MAX_PIXELS
     try:
         data = read_bytes(image_path)
         if data.startswith(LFS_POINTER):
-            raise ValueError("a pointer of Git LFS, which git lfs pull replaces by the image")
+            raise ValueError("a Git LFS pointer; run git lfs pull to get the image")
         with Image.open(io.BytesIO(data)) as image:
             if image.width * image.height > MAX_PIXELS:
-                raise ValueError(f"{image.width} x {image.height} pixels are too many")
+                raise ValueError(f"{image.width} x {image.height} pixels exceed the limit of {MAX_PIXELS}")
             return np.asarray(image.convert("RGBA" if "A" in image.getbands() else "RGB"))
     except FileNotFoundError:
         raise MapImageError(f"{image_path}: no such map image") from None
     except UnidentifiedImageError:
-        raise MapImageError(f"{image_path}: not a readable image (of no known format)") from None
-    except Exception as error:  # what Pillow's many readers raise for a broken file has no common class
+        raise MapImageError(f"{image_path}: not a readable image (unknown format)") from None
+    except Exception as error:  # errors of Pillow's readers have no common class
         raise MapImageError(f"{image_path}: not a readable image ({error})") from None
 
 
 def save_map(grid: Union[OccupancyGrid, BandedGrid], stem, occupied_at: int = 65, free_at: int = 25) -> Path:
-    """Writes ``stem``.pgm and ``stem``.yaml as map_saver does, both or none; returns the YAML.
+    """Write ``stem``.pgm and ``stem``.yaml as map_saver does, both or none.
 
-    Cells of 0..free_at become free, occupied_at..100 occupied, all others unknown. The YAML names the image
-    without a folder, so that the pair can be moved together.
+    The YAML names the image without a folder, so that the pair can be moved.
+
+    Args:
+        grid: Map.
+        stem: Path without extension.
+        occupied_at: Cells from this value to 100 become occupied.
+        free_at: Cells from 0 to this value become free; all others become unknown.
+
+    Returns:
+        Path of the YAML file.
+
+    Raises:
+        FileWriteError: If they cannot be written.
     """
     stem = Path(stem)
     pgm_path, yaml_path = stem.with_name(stem.name + ".pgm"), stem.with_name(stem.name + ".yaml")
@@ -129,16 +158,16 @@ def save_map(grid: Union[OccupancyGrid, BandedGrid], stem, occupied_at: int = 65
 
 
 def _pgm(grid: BandedGrid, occupied_at: int, free_at: int) -> Iterator[bytes]:
-    """The image, row by row: those of a campus have many millions of pixels."""
-    shades = np.full(256, 205, dtype=np.uint8)  # of the cells' bytes; the negative ones' are from 128 on
+    """Yield the image row by row, since large maps have many millions of pixels."""
+    shades = np.full(256, 205, dtype=np.uint8)  # index: byte of a cell; negative values start at 128
     shades[: free_at + 1] = 254
     shades[occupied_at:128] = 0
     yield f"P5\n# {grid.resolution:.3f} m/pix\n{grid.cols} {grid.rows}\n255\n".encode("ascii")
-    for rows in map(_rows, grid.bands):  # which hold no band any more when the next is made
+    for rows in map(_rows, grid.bands):  # holds one band at a time
         yield from (row.translate(shades.tobytes()) for row in rows)
 
 
 def _rows(cells: np.ndarray) -> Iterator[bytes]:
-    """The bytes of the rows from the top."""
+    """Yield the bytes of the rows from the top."""
     for row in np.flipud(cells):
         yield row.tobytes()

@@ -1,4 +1,4 @@
-"""How good a map is, compared with the true one."""
+"""Quality of a map compared with the true map."""
 
 from dataclasses import dataclass
 from typing import Optional
@@ -22,8 +22,13 @@ EIGHT_NEIGHBOURS = np.ones((3, 3), dtype=bool)
 
 @dataclass(frozen=True)
 class MapScore:
-    """``recall``: share of the visible true wall cells that the map has within the tolerance; ``precision``:
-    share of the map's wall cells that are true within it; ``doubled_walls``: how many walls it has twice."""
+    """Quality of a map.
+
+    Attributes:
+        recall: Share of the visible true wall cells that the map has within the tolerance.
+        precision: Share of the map's wall cells that are within the tolerance of a true wall.
+        doubled_walls: Number of walls that are drawn twice.
+    """
 
     recall: float
     precision: float
@@ -40,13 +45,23 @@ def score_map(
     sensor_range: float = 10.0,
     fine_truth: Optional[OccupancyGrid] = None,
 ) -> MapScore:
-    """Scores a map against the true one, of any extent and resolution each.
+    """Compare a map with the true map; extent and resolution may differ.
 
-    ``fine_truth``: the true map once more, with cells small enough to show gaps that ``truth`` closes and a
-    laser sees into, lest they count as doubled walls.
+    Only walls count as visible that a robot could observe from a position it can drive to.
 
-    Counted as visible are walls that a robot of ``robot_radius`` metres could have in ``sight`` metres from
-    anywhere it can drive to from ``start_in_truth``. Raises PlanarError if that place is not free.
+    Args:
+        grid: Map.
+        truth: True map.
+        start_in_truth: Start of the robot, from which positions must be reachable.
+        truth_in_map: Pose of the true map's frame in the map.
+        tolerance: Distance at which wall cells match [m].
+        robot_radius: Radius of the robot [m].
+        sensor_range: Range of its laser [m].
+        fine_truth: True map with cells small enough for gaps that ``truth`` closes but a laser can see into;
+            avoids that they count as doubled walls.
+
+    Raises:
+        PlanarError: If the robot cannot stand at ``start_in_truth``.
     """
     mapped_xy = grid.points_of(np.argwhere(grid.cells == OCCUPIED))
     true_xy = truth_in_map.transform_points(truth.points_of(np.argwhere(truth.cells == OCCUPIED)))
@@ -62,7 +77,20 @@ def score_map(
 
 
 def visible_walls(truth: OccupancyGrid, start: Pose2, robot_radius: float, sensor_range: float) -> np.ndarray:
-    """Occupied cells (N, 2) as (row, col) that can be seen from where a robot can drive to from ``start``."""
+    """Return the occupied cells that a robot can observe from positions it can drive to.
+
+    Args:
+        truth: True map.
+        start: Start of the robot in the map.
+        robot_radius: Radius of the robot [m].
+        sensor_range: Range of its laser [m].
+
+    Returns:
+        Cells as (row, col), (N, 2).
+
+    Raises:
+        PlanarError: If the robot cannot stand at ``start``.
+    """
     clearance = distance_field(truth.cells == OCCUPIED, truth.resolution)
     regions, _ = label((truth.cells == FREE) & (clearance > robot_radius))
     start_cell = truth.cells_of([[start.x, start.y]])
@@ -87,8 +115,7 @@ def _share_near(points_xy, others_xy, tolerance) -> float:
 
 
 def _count_doubled_walls(grid, truth, truth_in_map, tolerance) -> int:
-    """Long narrow gaps between walls that the truth has not, and long walls where it has none, while the
-    wall that they stand for is drawn in its place as well."""
+    """Count walls drawn twice: long false gaps between walls, and long false walls beside a correct one."""
     doubled = _long_false_gaps(grid, truth, truth_in_map, tolerance, 0)
     doubled |= _long_false_gaps(grid, truth, truth_in_map, tolerance, 1)
     doubled |= _long(_second_walls(grid, truth, truth_in_map, tolerance), grid.resolution)
@@ -97,7 +124,7 @@ def _count_doubled_walls(grid, truth, truth_in_map, tolerance) -> int:
 
 def _long_false_gaps(grid, truth, truth_in_map, tolerance, across) -> np.ndarray:
     gap_cells = np.argwhere(_gaps(grid, across, DOUBLING_GAP))
-    # Both walls of a true gap may be drawn nearer to each other.
+    # The map may show a true gap narrower than it is.
     widest = DOUBLING_GAP + 2.0 * tolerance
     true_gaps_xy = [
         truth_in_map.transform_points(truth.points_of(np.argwhere(_gaps(truth, i, widest)))) for i in (0, 1)
@@ -109,7 +136,7 @@ def _long_false_gaps(grid, truth, truth_in_map, tolerance, across) -> np.ndarray
 
 
 def _second_walls(grid, truth, truth_in_map, tolerance) -> np.ndarray:
-    """Wall cells far from any true wall, the nearest of which is in the map too: bool (rows, cols)."""
+    """Return false wall cells whose nearest true wall is in the map as well, bool (rows, cols)."""
     cells = np.argwhere(grid.cells == OCCUPIED)
     mapped_xy = grid.points_of(cells)
     true_xy = truth_in_map.transform_points(truth.points_of(np.argwhere(truth.cells == OCCUPIED)))
@@ -120,7 +147,7 @@ def _second_walls(grid, truth, truth_in_map, tolerance) -> np.ndarray:
 
 
 def _gaps(grid, across, widest) -> np.ndarray:
-    """Free cells between walls at most ``widest`` metres apart along one axis: bool (rows, cols)."""
+    """Return free cells between walls at most ``widest`` metres apart along one axis, bool (rows, cols)."""
     reach = round(widest / grid.resolution) + 1
     walls = np.pad(grid.cells == OCCUPIED, reach)
     closed = binary_closing(walls, np.ones((reach, 1) if across == 0 else (1, reach)))
@@ -134,7 +161,7 @@ def _mask(grid, cells) -> np.ndarray:
 
 
 def _long(mask, resolution, axes=(0, 1)) -> np.ndarray:
-    """The part of a mask whose pieces are at least DOUBLING_LENGTH long along one of the axes."""
+    """Return the parts of a mask that are at least DOUBLING_LENGTH long along one of the axes."""
     pieces, _ = label(mask, EIGHT_NEIGHBOURS)
     is_long = [False]
     for box in find_objects(pieces):

@@ -1,4 +1,4 @@
-"""Named places of a map, from YAML: where errands lead."""
+"""Named places of a map, read from YAML."""
 
 from dataclasses import dataclass
 from typing import Dict, Optional, Tuple
@@ -13,9 +13,13 @@ DEFAULT_RADIUS = 0.35
 
 @dataclass(frozen=True)
 class NamedPlace:
-    """A named pose in the map, and others that serve as well; within ``radius`` metres a robot is there.
+    """A named goal in the map with alternative poses.
 
-    ``approaches``: the other poses, in the order in which they are worth trying.
+    Attributes:
+        name: Name.
+        pose: Preferred pose of the robot in the map.
+        radius: Distance to one of the poses within which the robot is at the place [m].
+        approaches: Alternative poses in the order in which to try them.
     """
 
     name: str
@@ -25,28 +29,32 @@ class NamedPlace:
 
     @property
     def poses(self) -> Tuple[Pose2, ...]:
+        """All poses, the preferred one first."""
         return (self.pose, *self.approaches)
 
     def distance_to(self, robot_in_map: Pose2) -> float:
-        """Metres to the nearest of its poses."""
+        """Return the distance from a robot pose to the nearest pose of the place [m]."""
         return min(pose.distance_to(robot_in_map) for pose in self.poses)
 
     def contains(self, robot_in_map: Pose2) -> bool:
+        """Return whether a robot at this pose is at the place."""
         return self.distance_to(robot_in_map) <= self.radius
 
 
 def load_places(path) -> Dict[str, NamedPlace]:
-    """The places of a YAML file ``name: {x: 1.0, y: 2.0, yaw: 0.0, radius: 0.35}`` by name.
+    """Load the places of a YAML file ``name: {x: 1.0, y: 2.0, yaw: 0.0, radius: 0.35}`` by name.
 
-    ``yaw`` and ``radius`` may be left out; ``approaches: [{x: 1.0, y: 1.5, yaw: 1.57}]`` may be added.
-    Raises SettingsError naming file, line and key.
+    ``yaw`` and ``radius`` are optional, as is ``approaches: [{x: 1.0, y: 1.5, yaw: 1.57}]``.
+
+    Raises:
+        SettingsError: With file, line and key.
     """
     table = read_table(path)
     return {name: parse_place(table, name) for name in table}
 
 
 def parse_place(table: Table, name: str) -> NamedPlace:
-    """The place below the key ``name`` of a table."""
+    """Return the place under the key ``name`` of a table."""
     fields = table.table(name)
     fields.allow_only("x", "y", "yaw", "radius", "approaches")
     approaches = fields.tables("approaches")
@@ -58,12 +66,12 @@ def parse_place(table: Table, name: str) -> NamedPlace:
 
 
 def parse_pose(table: Table) -> Pose2:
-    """The pose of a table's keys ``x``, ``y`` and, if it is there, ``yaw``."""
+    """Return the pose of a table with the keys ``x``, ``y`` and optionally ``yaw``."""
     return Pose2(table.number("x"), table.number("y"), table.number("yaw", 0.0))
 
 
 def load_pickup_and_dropoff(path) -> Tuple[NamedPlace, NamedPlace]:
-    """The places ``pickup`` and ``dropoff`` of a YAML file. Raises SettingsError."""
+    """Load the places ``pickup`` and ``dropoff`` of a YAML file. Raises SettingsError."""
     places = load_places(path)
     for name in ("pickup", "dropoff"):
         if name not in places:
@@ -72,7 +80,7 @@ def load_pickup_and_dropoff(path) -> Tuple[NamedPlace, NamedPlace]:
 
 
 def unreachable_reason(place: NamedPlace, grid: OccupancyGrid) -> Optional[str]:
-    """Why no robot can ever stand at a pose of ``place`` on this map, or None if all seem free."""
+    """Return why no robot can stand at a pose of a place on this map; None if all poses are free."""
     for pose in place.poses:
         obstruction = obstruction_at(pose, grid)
         if obstruction:
@@ -81,11 +89,11 @@ def unreachable_reason(place: NamedPlace, grid: OccupancyGrid) -> Optional[str]:
 
 
 def obstruction_at(pose: Pose2, grid: OccupancyGrid) -> Optional[str]:
-    """Why no robot can ever stand there on this map, or None if it seems free."""
+    """Return why no robot can stand at a pose on this map; None if it is free."""
     cell = grid.cells_of([[pose.x, pose.y]])
     if not grid.contains(cell)[0]:
         return "lies outside the map"
     value = grid.cells[tuple(cell[0])]
     if value == UNKNOWN:
-        return "lies where the map knows nothing"
+        return "lies in unknown space of the map"
     return "lies in an obstacle of the map" if value == OCCUPIED else None

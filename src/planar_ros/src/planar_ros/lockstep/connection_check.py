@@ -1,4 +1,4 @@
-"""Whether a loop of nodes is closed: each hears all that the others send."""
+"""Connection check: whether every subscriber of the synchronized nodes is connected to its publishers."""
 
 import xmlrpc.client
 from itertools import chain
@@ -10,8 +10,8 @@ import rospy
 from planar_ros.lockstep.transport import ANSWER_TOPIC, STATIC_TOPIC
 
 ANSWER_SECONDS = 1.0
-_SILENCE = (OSError, xmlrpc.client.Error)
-SystemState = Dict[str, List[str]]
+_UNAVAILABLE = (OSError, xmlrpc.client.Error)
+NodesByName = Dict[str, List[str]]
 
 
 class _TimedTransport(xmlrpc.client.Transport):
@@ -22,7 +22,7 @@ class _TimedTransport(xmlrpc.client.Transport):
 
 
 class ConnectionCheck:
-    """Asks the master and the nodes, none of which is waited for long."""
+    """Queries the master and the nodes, with time-outs."""
 
     def __init__(self):
         self._master = rosgraph.get_master_uri()
@@ -31,40 +31,47 @@ class ConnectionCheck:
     def missing(
         self, members: Collection[str], observers: Collection[str], static_publishers: Collection[str]
     ) -> List[str]:
-        """The connections that are still to come, for people.
+        """Return descriptions of the missing connections.
 
-        From a member to a member or an audience; for static transforms from their publishers to members.
+        Args:
+            members: Synchronized nodes; every connection between them is required, and from them to
+                observers.
+            observers: Unsynchronized nodes that must receive all messages.
+            static_publishers: Nodes whose /tf_static the members must receive.
         """
         try:
             published, subscribed, _ = self._state()
-            wanted = {
+            required = {
                 (sender, topic, receiver)
                 for topic, senders in published.items()
                 for sender in senders
                 for receiver in subscribed.get(topic, ())
                 if sender in members and (receiver in members or receiver in observers)
             }
-            listeners = set(members).intersection(subscribed.get(STATIC_TOPIC, ()))
-            wanted.update(
-                (name, STATIC_TOPIC, receiver) for name in static_publishers for receiver in listeners
+            subscribers = set(members).intersection(subscribed.get(STATIC_TOPIC, ()))
+            required.update(
+                (name, STATIC_TOPIC, receiver) for name in static_publishers for receiver in subscribers
             )
-            senders = {sender for sender, _, _ in wanted}.intersection(chain(*published.values()))
-            there = set(chain(*(self._outgoing(name) for name in senders)))
-        except _SILENCE as error:
-            return [f"an answer of the nodes ({error})"]
-        return [f"{topic} from {sender} to {receiver}" for sender, topic, receiver in sorted(wanted - there)]
+            senders = {sender for sender, _, _ in required}.intersection(chain(*published.values()))
+            established = set(chain(*(self._outgoing(name) for name in senders)))
+        except _UNAVAILABLE as error:
+            return [f"a reply of the nodes ({error})"]
+        return [
+            f"{topic} from {sender} to {receiver}"
+            for sender, topic, receiver in sorted(required - established)
+        ]
 
     def known_nodes(self) -> Tuple[Set[str], Set[str]]:
-        """The nodes that the master knows, and those of them that can be in step."""
+        """Return the nodes known to the master, and those of them that can be synchronized."""
         try:
             tables = self._state()
-        except _SILENCE:
+        except _UNAVAILABLE:
             return set(), set()
         names = set(chain(*(chain(*table.values()) for table in tables)))
         return names, set(tables[0].get(ANSWER_TOPIC, ()))
 
-    def _state(self) -> Tuple[SystemState, SystemState, SystemState]:
-        published, subscribed, services = _ask(self._master, "getSystemState")
+    def _state(self) -> Tuple[NodesByName, NodesByName, NodesByName]:
+        published, subscribed, services = _query(self._master, "getSystemState")
         return dict(published), dict(subscribed), dict(services)
 
     def _outgoing(self, name: str) -> Set[Tuple[str, str, str]]:
@@ -72,16 +79,16 @@ class ConnectionCheck:
             bus = rospy.topics.get_topic_manager().get_pub_sub_info()
         else:
             if name not in self._uris:
-                self._uris[name] = _ask(self._master, "lookupNode", name)
+                self._uris[name] = _query(self._master, "lookupNode", name)
             try:
-                bus = _ask(self._uris[name], "getBusInfo")
-            except _SILENCE:
+                bus = _query(self._uris[name], "getBusInfo")
+            except _UNAVAILABLE:
                 del self._uris[name]
                 raise
-        return {(name, topic, receiver) for _, receiver, way, _, topic, *_ in bus if way == "o"}
+        return {(name, topic, receiver) for _, receiver, direction, _, topic, *_ in bus if direction == "o"}
 
 
-def _ask(uri: str, question: str, *arguments: str) -> Any:
+def _query(uri: str, method: str, *arguments: str) -> Any:
     proxy: Any = xmlrpc.client.ServerProxy(uri, transport=_TimedTransport())
-    _code, _status, value = getattr(proxy, question)(rospy.get_name(), *arguments)
+    _code, _status, value = getattr(proxy, method)(rospy.get_name(), *arguments)
     return value

@@ -1,11 +1,11 @@
-"""Calls of services between nodes in step: they carry the number of the caller's moment."""
+"""Service calls between synchronized nodes; they carry the number of the caller's instant."""
 
 import threading
 from typing import Any, Callable, Collection, Dict, Mapping, Optional, Set
 
 from rospy.impl.tcpros_service import ServiceImpl
 
-HEADER = "moment"
+INSTANT_HEADER = "moment"
 # Services that change nothing in the simulation, whenever they are called. Time that is paused, or advances
 # step by step, gives the same run.
 READ_ONLY = frozenset(
@@ -17,10 +17,10 @@ _local = threading.local()
 
 
 class CallMonitor:
-    """Notes each service that a node calls which is not synchronised: the call comes at a random moment.
+    """Notes each service that a node calls which is not synchronized: the call comes at a random moment.
 
     Args:
-        members: Returns the names of the synchronised nodes; none while nothing is synchronised.
+        members: Returns the names of the synchronized nodes; none while nothing is synchronised.
         note: Called with a text.
         harmless: Resolved names of further services that change nothing in the simulation.
     """
@@ -46,29 +46,31 @@ class CallMonitor:
             return
         if name not in READ_ONLY and not name.startswith(READ_ONLY_PREFIX):
             self._known.add(service)
-            self._note(f"the service {service} was called by {caller}, which is not synchronised")
+            self._note(f"the service {service} was called by {caller}, which is not synchronized")
 
 
-def call_headers(moment: int) -> Dict[str, str]:
-    """What a node's call has to carry at this moment; nothing if it is not in step (0)."""
-    return {HEADER: str(moment)} if moment else {}
+def call_headers(instant: int) -> Dict[str, str]:
+    """Return the headers of a call at an instant; empty for 0, i.e. when the node is not synchronized."""
+    return {INSTANT_HEADER: str(instant)} if instant else {}
 
 
 def caller() -> str:
-    """The node in step that has made the call which this thread answers; "" if none has."""
+    """Return the synchronized node whose call this thread answers; empty if there is none."""
     return getattr(_local, "caller", "")
 
 
 def delay_service_replies(wait: Callable[[int], None], monitor: Optional[CallMonitor] = None) -> None:
-    """From now on a call of a node in step is answered when ``wait(number of its moment)`` returns.
+    """Delay each call of a synchronized node until ``wait(number of its instant)`` returns.
 
-    Other calls are checked by ``monitor``.
+    Args:
+        wait: Blocks until an instant.
+        monitor: Checks the calls of other nodes.
     """
     handle = ServiceImpl._handle_request
 
     def handle_in_time(self: Any, transport: Any, request: Any) -> None:
         header: Mapping[str, str] = getattr(request, "_connection_header", None) or {}
-        number = header.get(HEADER, "0")
+        number = header.get(INSTANT_HEADER, "0")
         _local.caller = header.get("callerid", "") if number.isdigit() and int(number) else ""
         if _local.caller:
             wait(int(number))

@@ -1,4 +1,4 @@
-"""Work that is due again and again in ROS time, in step or not."""
+"""Periodic work in ROS time, in lock-step or not, and progress reports to the simulator."""
 
 import threading
 import time
@@ -10,12 +10,12 @@ from std_msgs.msg import Header
 from planar_ros.node.clock import sleep_until
 
 NEVER = rospy.Time(0)
-# Wall seconds between two looks whether the node is still in step.
-IN_STEP_SECONDS = 0.2
+# Interval at which a synchronized node's thread checks whether it still is [wall s].
+CHECK_SECONDS = 0.2
 
 
 class Ticker:
-    """Calls ``tick(now)`` every ``period()`` seconds, ``on_time_jump()`` when ROS time has jumped back."""
+    """Calls ``tick(now)`` every ``period()`` seconds and ``on_time_jump()`` when ROS time has jumped back."""
 
     def __init__(
         self,
@@ -25,45 +25,45 @@ class Ticker:
     ):
         self._period, self._tick, self._on_time_jump = period, tick, on_time_jump
         self._due = NEVER
-        self._looked_at = NEVER
+        self._polled_at = NEVER
         self._lock = threading.RLock()
 
-    def start(self, is_in_step: Callable[[], bool], report: Callable[[rospy.Time], None]) -> None:
-        """Works in a thread of its own whenever the node is not in step, and reports each time."""
-        threading.Thread(target=self._work, args=(is_in_step, report), daemon=True).start()
+    def start(self, is_synchronized: Callable[[], bool], report: Callable[[rospy.Time], None]) -> None:
+        """Start a thread that ticks while the node is not synchronized, and calls ``report`` each time."""
+        threading.Thread(target=self._work, args=(is_synchronized, report), daemon=True).start()
 
     def poll(self) -> None:
-        """Works if it is due now."""
+        """Tick if it is due."""
         with self._lock:
             now, period = rospy.Time.now(), rospy.Duration(self._period())
-            if now < self._looked_at:
+            if now < self._polled_at:
                 self._restart()
-            self._looked_at = now
-            self._due = min(self._due, now + period)  # the period may have become shorter
+            self._polled_at = now
+            self._due = min(self._due, now + period)  # the period may have been shortened
             if now != rospy.Time(0) and now >= self._due:
                 self._due = max(self._due + period, now) if self._due != NEVER else now + period
                 self._tick(now)
 
-    def _work(self, is_in_step, report) -> None:
+    def _work(self, is_synchronized, report) -> None:
         while not rospy.is_shutdown():
             with self._lock:
-                due, looked_at = self._due, self._looked_at
+                due, polled_at = self._due, self._polled_at
             try:
-                now = sleep_until(due, looked_at)
+                now = sleep_until(due, polled_at)
             except rospy.ROSTimeMovedBackwardsException:
                 now = None
             with self._lock:
-                if not is_in_step():  # if it is, a moment looks
+                if not is_synchronized():  # otherwise the instant polls
                     if now is None:
                         self._restart()
                     else:
                         self.poll()
                         report(now)
                     continue
-            time.sleep(IN_STEP_SECONDS)
+            time.sleep(CHECK_SECONDS)
 
     def _restart(self) -> None:
-        self._due = self._looked_at = NEVER
+        self._due = self._polled_at = NEVER
         self._on_time_jump()
 
 
@@ -71,7 +71,7 @@ PROGRESS_TOPIC = "/simulation/progress"
 
 
 class ProgressPublisher:
-    """Reports the simulated time up to which this node has worked; silent without simulated time."""
+    """Publishes the simulated time up to which this node has worked; does nothing without simulated time."""
 
     def __init__(self):
         self._publisher = None
@@ -79,5 +79,6 @@ class ProgressPublisher:
             self._publisher = rospy.Publisher(PROGRESS_TOPIC, Header, queue_size=10, tcp_nodelay=True)
 
     def report(self, stamp: rospy.Time) -> None:
+        """Publish that the node has worked up to ``stamp``."""
         if self._publisher is not None:
             self._publisher.publish(Header(stamp=stamp, frame_id=rospy.get_name().lstrip("/")))

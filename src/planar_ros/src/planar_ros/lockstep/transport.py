@@ -1,4 +1,4 @@
-"""rospy's connections, so that messages between nodes in step are counted and come in one piece a moment."""
+"""Connections of synchronized nodes: messages are counted and sent in one batch for each logical instant."""
 
 import threading
 from collections import deque
@@ -13,91 +13,96 @@ from planar_ros.node.connections import ImmediateConnection
 
 INSTANT_TOPIC, ANSWER_TOPIC, CLOCK_TOPIC = "/simulation/moment", "/simulation/answer", "/clock"
 STATIC_TOPIC = "/tf_static"
-# They go by themselves: the first two say how many of all others there are, the moment is the time.
+# Sent outside the batches: instants and answers carry the counts of all other messages, the clock the time.
 UNCOUNTED = frozenset((INSTANT_TOPIC, ANSWER_TOPIC, CLOCK_TOPIC))
 LENGTH_BYTES = 4
-# Of messages to those who only look on, so many at most are sent in one piece.
+# Maximum number of messages to an observer in one batch.
 MAX_BATCH = 10
-# By receiver and topic, of connections that may have been removed since.
+# Counts by receiver and topic of connections that may have been removed since.
 _last_counts: Dict[Tuple[str, str], int] = {}
 _init = TCPROSSub.__init__
 
 
 class LockstepConnection(ImmediateConnection):
-    """Towards a node in step it keeps what is sent back until the moment's answer, and loses nothing.
+    """Connection that batches messages to synchronized nodes until the answer to an instant, and drops none.
 
-    ``members``: the nodes in step with this one; none, and it is a connection as any other.
-    ``audience``: nodes that only look on, and miss nothing either. What the thread ``saver`` sends to them,
-    and the clock to anybody, is kept back too, for a send costs as much as the message: until it calls
-    ``flush``, which it does before it waits for anything.
+    Messages to observers, and the clock, are batched as well if they are sent by ``batching_thread``, since a
+    send costs as much as a message. That thread calls ``flush`` before it waits for anything.
+
+    Attributes:
+        members: Synchronized nodes; without any, the connection is a normal one.
+        observers: Unsynchronized nodes that must receive all messages.
+        batching_thread: Identifier of the thread that batches messages to observers.
+        count: Number of messages sent.
+        receiver: Name of the receiving node.
     """
 
     members: ClassVar[FrozenSet[str]] = frozenset()
     observers: ClassVar[FrozenSet[str]] = frozenset()
     batching_thread: ClassVar[Optional[int]] = None
-    _full: ClassVar[Deque["LockstepConnection"]] = deque()
+    _unsent: ClassVar[Deque["LockstepConnection"]] = deque()
 
     def __init__(self, connection, queue_size: int):
         self.count = 0
         self.receiver, self._topic = connection.endpoint_id, connection.protocol.resolved_name
-        self._kept: List[bytes] = []
-        # Reentrant, for a message may be sent while others are: the order is that of the calls.
-        self._keeping = threading.RLock()
+        self._batch: List[bytes] = []
+        # Reentrant, since a message may be sent while others are; the order is that of the calls.
+        self._batch_lock = threading.RLock()
         super().__init__(connection, queue_size)
 
     def write_data(self, data) -> bool:
-        is_in_step = self.receiver in self.members
-        if is_in_step and self._topic == CLOCK_TOPIC:
+        is_member = self.receiver in self.members
+        if is_member and self._topic == CLOCK_TOPIC:
             return True
-        with self._keeping:
+        with self._batch_lock:
             self.count += 1
-            if is_in_step and self._topic not in UNCOUNTED:
-                return self._keep(data)
-            if self._may_save() and len(self._kept) < MAX_BATCH:
-                return self._keep(data)
-            self._send_kept()
+            if is_member and self._topic not in UNCOUNTED:
+                return self._append(data)
+            if self._may_batch() and len(self._batch) < MAX_BATCH:
+                return self._append(data)
+            self._send_batch()
             return super().write_data(data)
 
     @classmethod
     def flush_all(cls) -> None:
-        """Sends whatever has been kept back, first what was first."""
-        with suppress(IndexError):  # two threads may be at it
+        """Send all batched messages in order."""
+        with suppress(IndexError):  # two threads may call it
             while True:
-                cls._full.popleft().flush()
+                cls._unsent.popleft().flush()
 
     def flush(self) -> None:
-        """Sends what was kept back; an error is left to the next message, where rospy expects it."""
-        with self._keeping:
+        """Send the batch; an error is raised by the next message, where rospy expects it."""
+        with self._batch_lock:
             try:
-                self._send_kept()
+                self._send_batch()
             except Exception as error:
                 self._error = error
 
-    def _may_save(self) -> bool:
+    def _may_batch(self) -> bool:
         if self.batching_thread is None or threading.get_ident() != self.batching_thread:
             return False
         return self._topic == CLOCK_TOPIC or (
             self.receiver in self.observers and self._topic not in UNCOUNTED
         )
 
-    def _keep(self, data) -> bool:
+    def _append(self, data) -> bool:
         if self._error or self._connection.done:
             return super().write_data(data)
         if self._topic != CLOCK_TOPIC:
-            self._queue_size = 0  # rospy's word for: drop nothing
-        if not self._kept:
-            self._full.append(self)
-        self._kept.append(data)
+            self._queue_size = 0  # rospy's value for an unlimited queue
+        if not self._batch:
+            self._unsent.append(self)
+        self._batch.append(data)
         return True
 
-    def _send_kept(self) -> None:
-        if self._kept:
-            kept, self._kept = b"".join(self._kept), []
-            super().write_data(kept)
+    def _send_batch(self) -> None:
+        if self._batch:
+            batch, self._batch = b"".join(self._batch), []
+            super().write_data(batch)
 
 
 class SerializedMessage:
-    """A message as it came, not yet deserialized."""
+    """A received message that is not deserialized yet."""
 
     __slots__ = ("_connection_header", "data")
 
@@ -107,19 +112,19 @@ class SerializedMessage:
 
 
 def install() -> None:
-    """From now on this node's connections are such."""
+    """Use these connections for this node from now on."""
     rospy.topics.QueuedConnection = LockstepConnection
-    TCPROSSub.__init__ = _init_for_frames
+    TCPROSSub.__init__ = _init_for_serialized
 
 
-def _init_for_frames(self: TCPROSSub, *given: Any, **named: Any) -> None:
-    """A connection from before, as that of /clock may be, goes on with messages."""
+def _init_for_serialized(self: TCPROSSub, *given: Any, **named: Any) -> None:
+    """Receive serialized messages; earlier connections, such as that of /clock, still receive messages."""
     _init(self, *given, **named)
-    self.read_messages = _read_frames
+    self.read_messages = _read_serialized
 
 
-def _read_frames(b: BytesIO, msg_queue: List[SerializedMessage], sock: object) -> None:
-    """Cuts what has come into frames, and leaves it to an Inbox to make messages of them."""
+def _read_serialized(b: BytesIO, msg_queue: List[SerializedMessage], sock: object) -> None:
+    """Split received bytes into serialized messages, which a MessageBuffer deserializes."""
     end, at = b.tell(), 0
     with b.getbuffer() as view:
         while end - at >= LENGTH_BYTES:
@@ -137,9 +142,10 @@ def _read_frames(b: BytesIO, msg_queue: List[SerializedMessage], sock: object) -
 
 
 def connections() -> Iterator[Tuple[str, str, Any]]:
-    """Receiver, topic and connection of all that this node sends by.
+    """Yield receiver, topic and connection of everything this node publishes.
 
-    rospy makes a plain one for a subscriber that connects before the topic has been told its queue's size.
+    rospy makes a normal connection for a subscriber that connects before the queue size of the topic is
+    known.
     """
     for topic, publisher in list(rospy.topics.get_topic_manager().pubs.items()):
         for connection in publisher.connections:
@@ -147,19 +153,19 @@ def connections() -> Iterator[Tuple[str, str, Any]]:
 
 
 def flush() -> None:
-    """Sends whatever has been kept back."""
+    """Send all batched messages."""
     LockstepConnection.flush_all()
 
 
 def batch_sends() -> None:
-    """From now on the calling thread's messages to those who look on are sent when it calls ``flush``."""
+    """Batch the calling thread's messages to observers from now on, until it calls ``flush``."""
     LockstepConnection.batching_thread = threading.get_ident()
 
 
 def remember_counts(topic: str) -> None:
-    """What has been sent on a topic until now is told although all who listen are about to hang up.
+    """Remember the number of messages sent on a topic whose subscribers are about to disconnect.
 
-    rospy removes their connections twice a second, and so perhaps before the moment's answer.
+    rospy removes closed connections twice a second, and so possibly before the answer to the instant.
     """
     _last_counts.update(
         ((receiver, name), _count_of(connection))
@@ -169,7 +175,7 @@ def remember_counts(topic: str) -> None:
 
 
 def sent(sender: str) -> Dict[str, int]:
-    """How many messages have gone out on each connection to a node in step, by "sender receiver topic"."""
+    """Return the number of messages sent to each synchronized node, by ``sender receiver topic``."""
     members = LockstepConnection.members
     now = {
         (receiver, topic): _count_of(connection)
@@ -190,6 +196,6 @@ def _count_of(connection: Any) -> int:
 
 
 def topology() -> int:
-    """Another number for other topics."""
+    """Return a number that changes with the topics of the node."""
     manager = rospy.topics.get_topic_manager()
     return hash((frozenset(manager.pubs), frozenset(manager.subs))) & 0xFFFFFFFF

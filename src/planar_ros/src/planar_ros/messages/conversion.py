@@ -69,7 +69,7 @@ def pose2_of(position, orientation) -> Pose2:
     """
     found = Pose2(position.x, position.y, yaw_of(orientation))
     if not found.is_in_range():
-        raise MessageError(f"a pose at {found.x:g}, {found.y:g}, {found.yaw:g} means nothing")
+        raise MessageError(f"a pose at {found.x:g}, {found.y:g}, {found.yaw:g} is out of range")
     return found
 
 
@@ -126,7 +126,7 @@ def grid_from_msg(message) -> OccupancyGrid:
     info = message.info
     if len(message.data) != info.width * info.height:
         size = f"{info.width} x {info.height} cells with {len(message.data)} values"
-        raise MessageError(f"a map of {size} means nothing")
+        raise MessageError(f"invalid map: {size}")
     cells = np.array(message.data, dtype=np.int8).reshape(info.height, info.width)
     return OccupancyGrid(cells, info.resolution, pose2_from_msg(info.origin))
 

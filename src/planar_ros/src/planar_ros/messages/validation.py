@@ -82,4 +82,4 @@ def check_twist(twist) -> None:
     """
     linear, angular = twist.linear, twist.angular
     if not is_within(MAX_SPEED, linear.x, linear.y, linear.z, angular.x, angular.y, angular.z):
-        raise MessageError("a velocity that is not finite, or that no robot has, means nothing")
+        raise MessageError(f"invalid velocity: not finite, or above {MAX_SPEED:g} m/s or rad/s")

@@ -1,1 +1,1 @@
-"""What a node does besides its work: begin, wait, tell, end; settings; the clock."""
+"""Parts of every node: entry point, start and end, parameters, readiness, checkpoints, connections."""

@@ -1,4 +1,4 @@
-"""A file that a node leaves for the next of its name, should it end all of a sudden."""
+"""Checkpoints from which a restarted node of the same name continues after a crash."""
 
 import json
 import threading
@@ -16,50 +16,55 @@ from planar_ros.node.parameters import ParameterWriter
 
 
 class ParameterCheckpoint:
-    """A value made of what JSON knows, in the parameter ``~keepsake/value`` of the master.
+    """A JSON value in the private parameter ``~keepsake/value`` on the parameter server.
 
-    Whoever is started anew after a crash or a ``kill -9`` finds it; a node that ends in order takes it away.
+    A node that restarts after a crash or ``kill -9`` reads it; a node that shuts down in order deletes it.
     For one thread.
     """
 
     def __init__(self):
         self._name = rospy.resolve_name("~keepsake/value")
         self._writer = ParameterWriter()
-        self._kept = rospy.get_param(self._name, "")
-        rospy.on_shutdown(self._forget)
+        self._text = rospy.get_param(self._name, "")
+        rospy.on_shutdown(self._delete)
 
     @property
     def latest(self) -> Optional[Any]:
-        """What an earlier node has left, or this one has kept since; None if there is nothing."""
-        return json.loads(self._kept) if self._kept else None
+        """The value that an earlier node left, or that was saved last; None if there is none."""
+        return json.loads(self._text) if self._text else None
 
     def save(self, value: Any) -> None:
-        """From now on this is what is found; costs nothing if it is the same."""
+        """Save a value; costs nothing if it is unchanged."""
         text = json.dumps(value)
-        if text != self._kept:
-            self._kept = text
+        if text != self._text:
+            self._text = text
             self._writer.write({self._name: text})
 
-    def _forget(self) -> None:
-        with suppress(OSError, xmlrpc.client.Error):  # a master that is gone has nothing left to forget
+    def _delete(self) -> None:
+        with suppress(OSError, xmlrpc.client.Error):  # the master is gone, and the parameter with it
             xmlrpc.client.ServerProxy(rosgraph.get_master_uri()).deleteParam(rospy.get_name(), self._name)
 
 
-# Wall seconds from one complaint to the next.
-ALARM_SECONDS = 60.0
+# Wall seconds between warnings.
+WARN_SECONDS = 60.0
 
 
 class SavedFile(NamedTuple):
-    """``value``: what was known, when the file was written, of what it holds; made of what JSON knows."""
+    """A file of a checkpoint.
+
+    Attributes:
+        path: File.
+        value: JSON value saved with the file.
+    """
 
     path: Path
     value: Any
 
 
 class FileCheckpoint:
-    """What is too large for a parameter: a file among the logs, of which a ParameterCheckpoint tells.
+    """A checkpoint too large for a parameter: a file in the log folder, referred to by a ParameterCheckpoint.
 
-    File and value are always of one moment. A node that ends in order leaves neither. For one thread.
+    File and value always belong together. A node that shuts down in order deletes both. For one thread.
     """
 
     def __init__(self):
@@ -74,14 +79,16 @@ class FileCheckpoint:
 
     @property
     def latest(self) -> Optional[SavedFile]:
-        """What an earlier node has left, or this one has kept since; None if there is nothing."""
-        told = self._checkpoint.latest
-        return None if told is None else SavedFile(Path(told["path"]), told["value"])
+        """The file that an earlier node left, or that was saved last; None if there is none."""
+        saved = self._checkpoint.latest
+        return None if saved is None else SavedFile(Path(saved["path"]), saved["value"])
 
     def save(self, write: Callable[[Path], None], value: Any) -> None:
-        """From now on this is what is found; if that cannot be, a warning tells so.
+        """Save a file and a value; if that fails, log a warning.
 
-        ``write`` writes the file, and may raise FileWriteError.
+        Args:
+            write: Writes the file to the given path; may raise FileWriteError.
+            value: JSON value to be stored with the file.
         """
         with self._lock:
             if self._is_closed:
@@ -92,12 +99,12 @@ class FileCheckpoint:
                 self._folder.mkdir(parents=True, exist_ok=True)
                 write(path)
             except (OSError, FileWriteError) as error:
-                rospy.logwarn_throttle(ALARM_SECONDS, "nothing is kept for a node after this one: %s", error)
+                rospy.logwarn_throttle(WARN_SECONDS, "no checkpoint for a restart of this node: %s", error)
                 return
             self._checkpoint.save({"path": str(path), "value": value})
 
     def _both(self) -> List[Path]:
-        """One is written while the other one is what is found."""
+        """Return the two paths that are written alternately, so that the latest file stays complete."""
         return [self._folder / f"{self._stem}{number}" for number in range(2)]
 
     def _close(self) -> None:
@@ -106,7 +113,7 @@ class FileCheckpoint:
             self._remove()
 
     def _remove(self, but: Optional[Path] = None) -> None:
-        """Also what a node has left that died while it wrote."""
+        """Delete all files of this name but one, also partial ones of a node that crashed while writing."""
         for path in self._folder.glob(f"{self._stem}*"):
             if path != but:
                 path.unlink(missing_ok=True)

@@ -1,21 +1,30 @@
-"""Waiting in ROS time, for nodes that a simulation in lock-step waits for in turn."""
+"""Waiting in ROS time for nodes that a simulation waits for in lock-step."""
 
 from typing import Optional
 
 import rospy
 
-# So that a shutdown is noticed at once.
+# Interval at which a shutdown is detected.
 LONGEST_WAIT_SECONDS = 0.2
 
 
 def sleep_until(due: rospy.Time, since: Optional[rospy.Time] = None) -> rospy.Time:
-    """Waits until ROS time has come to ``due``; returns the time then.
+    """Wait until ROS time reaches a time.
 
-    ``since``: a time that has been, by default now; an earlier one is a jump back.
+    Unlike rospy.sleep it handles every clock message and waits for a point in time instead of a duration:
+    while the simulation waits for this node, the clock stands still, and a wait that is one step too long
+    would never end.
 
-    Unlike rospy.sleep it misses no message of the clock, and waits for a point in time, not for a span: when
-    the simulation waits for this node, the clock stands still, and one step too many would never come.
-    Raises ROSTimeMovedBackwardsException and ROSInterruptException as rospy.sleep does.
+    Args:
+        due: Time to wait for.
+        since: Earlier reading of the clock, by default now; an earlier time than this is a jump back.
+
+    Returns:
+        ROS time at the end.
+
+    Raises:
+        rospy.ROSTimeMovedBackwardsException: If time jumps back.
+        rospy.ROSInterruptException: On shutdown.
     """
     if rospy.rostime.is_wallclock():
         rospy.sleep(due - rospy.Time.now())

@@ -1,4 +1,4 @@
-"""Publishing without a change of threads for every message and subscriber."""
+"""Patches of rospy's connections: immediate sending, a longer listen backlog, no lost publisher updates."""
 
 import socket
 from typing import List, Optional, Sequence
@@ -10,19 +10,19 @@ from rospy.impl.tcpros_pubsub import QueuedConnection
 
 
 def send_immediately() -> None:
-    """From now on publishers with a queue send at once what the socket takes; to be called once a node.
+    """Make publishers with a queue send at once what the socket accepts; call it once per process.
 
-    rospy hands every message to a thread of each subscriber, which for a node that publishes much costs more
-    than all its work. A subscriber that is slow still holds up nobody: then its thread takes over.
+    rospy passes every message to a thread of each subscriber, which costs a node with many messages more than
+    all its other work. A slow subscriber still blocks nothing: its thread takes over.
     """
     rospy.topics.QueuedConnection = ImmediateConnection
 
 
 class ImmediateConnection(QueuedConnection):
-    """Relays to a transport; its thread gets only what does not fit into the socket's buffer."""
+    """Connection that sends directly; its thread sends only what does not fit into the socket's buffer."""
 
     def __init__(self, connection, queue_size: int):
-        # What is left of a message that was sent in part; unlike the queue's it must not be dropped.
+        # Rest of a message that was sent partially; unlike queued messages it must not be dropped.
         self._rest = b""
         self._is_relaying = False
         self._queue: List[bytes]
@@ -43,7 +43,7 @@ class ImmediateConnection(QueuedConnection):
         return super().write_data(data)
 
     def _send(self, data) -> int:
-        """How much of it the socket has taken without waiting; an error is left to the thread to meet."""
+        """Return how many bytes the socket accepted without blocking; errors are left to the thread."""
         try:
             sent = self._connection.socket.send(data, socket.MSG_DONTWAIT)
         except (OSError, AttributeError):
@@ -69,34 +69,35 @@ class ImmediateConnection(QueuedConnection):
                 self._is_relaying = False
 
 
-WAITING = 128
+LISTEN_BACKLOG = 128
 
 
 def extend_listen_backlog() -> None:
-    """From now on the node's server keeps so many connections waiting; to be called before ``init_node``.
+    """Make the node's server accept many simultaneous connections; call it before ``init_node``.
 
-    rospy's keeps five, and the sixth comes a second later: TCP tries again after that time.
+    rospy's backlog is five; a sixth connection is retried by TCP only after a second.
     """
 
     def create(self: TCPServer) -> socket.socket:
         server: socket.socket = _create(self)
-        server.listen(WAITING)
+        server.listen(LISTEN_BACKLOG)
         return server
 
     TCPServer._create_server_sock = create
 
 
 def merge_publisher_updates() -> None:
-    """From now on the node connects to all publishers that it is told of; to be called before ``init_node``.
+    """Make the node connect to all publishers of queued updates; call it before ``init_node``.
 
-    rospy's goes by the newest list of a topic's, as it comes. Who subscribes while another registers as its
-    publisher may hear the master's news first, and then the answer, from before: it would never connect.
+    rospy uses the newest list of publishers of a topic. If a publisher registers while the node subscribes,
+    the master's update may arrive before the older answer to the subscription, and the node would never
+    connect.
     """
 
     def update(self: RegManager, topic: str, uris: Sequence[str]) -> None:
         with self.cond:
-            waiting = [uri for name, earlier in self.updates if name == topic for uri in earlier]
-            _update(self, topic, list(dict.fromkeys((*waiting, *uris))))
+            queued = [uri for name, earlier in self.updates if name == topic for uri in earlier]
+            _update(self, topic, list(dict.fromkeys((*queued, *uris))))
 
     RegManager.publisher_update = update
 

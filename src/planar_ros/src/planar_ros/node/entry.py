@@ -1,4 +1,4 @@
-"""How a process begins: with imports, which take a second and in which libraries catch whatever is raised."""
+"""Process entry points: imports that can be interrupted, command lines, BLAS threads."""
 
 import argparse
 import importlib
@@ -12,20 +12,20 @@ from supervision.interruption import exiting_on_signals
 
 
 def start_node(function: str) -> None:
-    """Calls the function of a node, as ``call``; in a child of a fork server, if there is one."""
+    """Call the main function of a node; if there is a fork server, in a child of it."""
     run_in_fork_server(f"{__name__}:start_forked", function)
     call(function)
 
 
 def start_forked(function: str) -> None:
-    """In a child of the fork server: rospy has read the names of another process' command line there."""
+    """Call the main function in a child of the fork server, with rospy's names of its command line."""
     if "rospy.names" in sys.modules:
         importlib.reload(sys.modules["rospy.names"])
     call(function)
 
 
 def call(function: str, *arguments: object) -> Any:
-    """What the function returns, given as ``package.module:name``; Ctrl-C is heard while that is imported."""
+    """Import and call ``package.module:name``; signals end the process also during the import."""
     module, _, name = function.partition(":")
     with exiting_on_signals():
         found = getattr(importlib.import_module(module), name)
@@ -33,18 +33,18 @@ def call(function: str, *arguments: object) -> Any:
 
 
 def use_one_blas_thread() -> None:
-    """Matrices here are small: more threads of what is imported would only wait for work, in busy loops."""
+    """Limit BLAS to one thread: the matrices are small, and further threads would only spin."""
     threadpool_limits(1, user_api="blas")
 
 
 def parse_known(parser: argparse.ArgumentParser, words: List[str]) -> argparse.Namespace:
-    """What the parser knows of the words."""
+    """Parse the known arguments of a command line; warn of unknown ones, which official nodes accept."""
     known, unknown = parser.parse_known_args(words)
     warn_unknown(parser.prog, unknown)
     return known
 
 
 def warn_unknown(program: str, words: List[str]) -> None:
-    """Says which words mean nothing, if there are any."""
+    """Print a warning with the unknown arguments, if there are any."""
     if words:
-        print(f"[{program}] goes on without what it does not know: {' '.join(words)}", file=sys.stderr)
+        print(f"[{program}] ignoring unknown arguments: {' '.join(words)}", file=sys.stderr)

@@ -1,4 +1,4 @@
-"""Last words: what a node publishes before it ends reaches whoever listens."""
+"""Flush on shutdown: what a node publishes before it ends reaches its subscribers."""
 
 import socket
 import time
@@ -16,16 +16,20 @@ POLL_SECONDS = 0.01
 
 
 def flush_and_close(*publishers: rospy.Publisher, patience: float = PATIENCE_SECONDS) -> None:
-    """Waits, at most ``patience`` wall-clock seconds, until all subscribers have taken what was published.
+    """Wait until all subscribers have received what was published, then close the connections.
 
-    A node that just ended would take back its topic, upon which subscribers drop what they have not read. So
-    each connection is closed for writing, which a subscriber answers by hanging up when it has read all.
-    Nothing can be published afterwards.
+    When a node ends, its topics are unregistered, and subscribers drop unread messages. Therefore each
+    connection is closed for writing, and a subscriber closes it when it has read everything. Nothing can be
+    published afterwards.
+
+    Args:
+        publishers: Publishers.
+        patience: Time limit for all of them [wall s].
     """
     deadline = time.monotonic() + patience
-    transport.flush()  # what a node in step keeps until the moment's answer
+    transport.flush()  # messages that are batched until the end of the instant
     for publisher in publishers:
-        # Asked anew each time, as listeners leave, too, where a whole graph is ended.
+        # Queried each time, since subscribers leave as well when a whole graph shuts down.
         while not are_all_connected(publisher) and time.monotonic() < deadline:
             time.sleep(POLL_SECONDS)
         transport.remember_counts(publisher.resolved_name)
@@ -38,35 +42,35 @@ def flush_and_close(*publishers: rospy.Publisher, patience: float = PATIENCE_SEC
 
 
 def publish_on_shutdown(publisher: rospy.Publisher, message: genpy.Message) -> None:
-    """Has whoever listens then hear ``message`` when the node ends: rospy alone would drop it."""
+    """Publish a message when the node shuts down, and wait until subscribers have received it."""
 
-    def say():
+    def publish():
         publisher.publish(message)
         flush_and_close(publisher)
 
-    rospy.on_shutdown(say)
+    rospy.on_shutdown(publish)
 
 
 def _flushed(publisher: rospy.Publisher, deadline: float) -> List[socket.socket]:
-    """The sockets of a publisher once rospy has handed them all that waited."""
+    """Return the sockets of a publisher once rospy has written all queued messages."""
     connections = [each for each in publisher.impl.connections if not each.done]
     is_latched = publisher.impl.latch is not None
-    while any(_is_at_work(each, is_latched) for each in connections) and time.monotonic() < deadline:
+    while any(_is_sending(each, is_latched) for each in connections) and time.monotonic() < deadline:
         time.sleep(POLL_SECONDS)
-        transport.flush()  # also what is latched, for who has come just now
-    time.sleep(POLL_SECONDS)  # for what has been taken out of a queue just now
+        transport.flush()  # latched messages for new subscribers as well
+    time.sleep(POLL_SECONDS)  # for messages just removed from a queue
     sockets = [getattr(each, "socket", None) for each in connections]
     return [each for each in sockets if each is not None]
 
 
-def _is_at_work(connection: Any, is_latched: bool) -> bool:
-    """Whether something waits to be sent; rospy sends what is latched to a new one just after it is there."""
-    waiting = (getattr(connection, name, None) for name in ("_queue", "_rest", "_is_relaying", "_kept"))
-    return any(waiting) or (is_latched and connection.stat_num_msg == 0)
+def _is_sending(connection: Any, is_latched: bool) -> bool:
+    """Return whether messages are queued; rospy sends a latched one shortly after a connection is made."""
+    queued = (getattr(connection, name, None) for name in ("_queue", "_rest", "_is_relaying", "_batch"))
+    return any(queued) or (is_latched and connection.stat_num_msg == 0)
 
 
 def _wait_for_end(connection: socket.socket, deadline: float) -> None:
-    """Until the other side has hung up."""
+    """Wait until the other side has closed the connection."""
     with suppress(OSError):
         connection.settimeout(max(POLL_SECONDS, deadline - time.monotonic()))
         while connection.recv(1024):

@@ -1,4 +1,4 @@
-"""Parameters of the parameter server made into settings."""
+"""Settings from the parameter server."""
 
 import xmlrpc.client
 from typing import Any, Dict, Iterable, Mapping, Type, TypeVar
@@ -10,7 +10,7 @@ from planar import SettingsError
 from planar.config.hints import hint
 from planar.config.settings import settings_from
 
-# What dynamic_reconfigure leaves beside a node's parameters.
+# Parameter that dynamic_reconfigure adds to a node's parameters.
 RESTORE = "restore_defaults"
 T = TypeVar("T")
 
@@ -22,13 +22,24 @@ def read_settings(
     ignore: Iterable[str] = (),
     defaults: Mapping[str, Any] = {},
 ) -> T:
-    """The dataclass ``kind`` filled from the parameters below ``namespace`` (see planar.config.settings).
+    """Read a settings dataclass from the parameter server (see planar.config.settings).
 
-    ``defaults`` hold for the parameters that are not set, before those of ``kind``.
-    Names that neither ``kind`` nor ``ignore`` knows are warned of, with the nearest known one, and so are
-    values of a wrong type, which count as not set, as in roscpp; with ``~strict_params`` both are errors.
-    Nested namespaces are other components' matter and left alone.
-    Raises SettingsError with the full name of the parameter.
+    Unknown names cause a warning with the most similar known name, and values of a wrong type count as not
+    set, as in roscpp; with ``~strict_params`` both are errors. Nested namespaces belong to other components
+    and are ignored.
+
+    Args:
+        kind: Settings dataclass.
+        names: Official name -> field.
+        namespace: Namespace of the parameters.
+        ignore: Further known names.
+        defaults: Values for parameters that are not set, instead of the defaults of ``kind``.
+
+    Returns:
+        The settings.
+
+    Raises:
+        SettingsError: With the full name of the parameter.
     """
     where = rospy.resolve_name(namespace).rstrip("/") + "/"
     values = {name: value for name, value in parameters_below(where).items() if not isinstance(value, dict)}
@@ -41,18 +52,19 @@ def read_settings(
 
 
 def parameters_below(namespace: str) -> Dict[str, Any]:
-    """All parameters below a namespace as a (nested) dictionary; empty if there are none."""
+    """Return all parameters of a namespace as a nested dictionary; empty if there are none."""
     values = rospy.get_param(rospy.resolve_name(namespace).rstrip("/"), {})
     return values if isinstance(values, dict) else {}
 
 
 class ParameterWriter:
-    """Sets several parameters in one call of the master, over a lasting connection; for one thread."""
+    """Sets several parameters with one request to the master over a persistent connection; for one thread."""
 
     def __init__(self):
         self._master = xmlrpc.client.ServerProxy(rosgraph.get_master_uri())
 
     def write(self, values: Mapping[str, Any]) -> None:
+        """Set parameters, given by name."""
         calls = xmlrpc.client.MultiCall(self._master)
         for name, value in values.items():
             calls.setParam(rospy.get_name(), rospy.resolve_name(name), value)
@@ -60,7 +72,7 @@ class ParameterWriter:
 
 
 def _report_wrong_type(complaint: str) -> None:
-    """Of a value that counts as not set."""
+    """Report a value that counts as not set."""
     _report(f"{complaint}: it counts as not set")
 
 

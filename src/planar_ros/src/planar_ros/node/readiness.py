@@ -1,4 +1,4 @@
-"""Says what a node waits for."""
+"""Readiness: what a node waits for, in its log and on its topic ``~waiting_for``."""
 
 import threading
 import time
@@ -10,108 +10,112 @@ from std_msgs.msg import String
 
 from planar_ros.lockstep import LockstepClient
 
-# Private topic, latched: what the node waits for, one a line; empty once it has everything.
+# Private latched topic: missing inputs, one a line; empty when the node is ready.
 WAITING_FOR_TOPIC = "waiting_for"
 PATIENCE_SECONDS = 4.0
-POLL_SECONDS, HELD_UP_SECONDS = 0.2, 1.0
+POLL_SECONDS, STALL_SECONDS = 0.2, 1.0
 
 
 class _WaitingForPublisher:
-    """Of what a node waits for, a part: all of them tell together, on one topic."""
+    """Publishes the missing inputs of one component together with those of the node's other components."""
 
-    _lacking: ClassVar[Dict["_WaitingForPublisher", List[str]]] = {}
-    _told: ClassVar[Optional[str]] = None
+    _missing_by_part: ClassVar[Dict["_WaitingForPublisher", List[str]]] = {}
+    _published: ClassVar[Optional[str]] = None
     _lock: ClassVar[threading.Lock] = threading.Lock()
 
     def __init__(self) -> None:
         self._publisher = rospy.Publisher(f"~{WAITING_FOR_TOPIC}", String, queue_size=1, latch=True)
 
-    def tell(self, lacking: List[str]) -> None:
-        """What this part lacks now."""
+    def publish(self, missing: List[str]) -> None:
+        """Set the missing inputs of this component."""
         with self._lock:
-            self._lacking[self] = lacking
-            text = "\n".join(name for part in self._lacking.values() for name in part)
-            if text != _WaitingForPublisher._told:
-                _WaitingForPublisher._told = text
+            self._missing_by_part[self] = missing
+            text = "\n".join(name for part in self._missing_by_part.values() for name in part)
+            if text != _WaitingForPublisher._published:
+                _WaitingForPublisher._published = text
                 self._publisher.publish(text)
 
 
 class ReadinessMonitor:
-    """Watches the conditions a node needs before it can work, and names once each that stays unmet.
+    """Checks the inputs of a node until all are present, and logs and publishes the missing ones.
 
-    On ``~waiting_for`` it tells at any time which they are.
-
-    ``conditions`` maps what is waited for ("a scan on /scan") to a function that says whether it is there.
-    Counted in wall time, since simulated time may be what is missing.
+    Uses wall time, since simulated time may be what is missing.
     """
 
     def __init__(self, conditions: Mapping[str, Callable[[], bool]]):
+        """Start checking.
+
+        Args:
+            conditions: Description of each input, e.g. ``a scan on /scan``, with a function that returns
+                whether it is present.
+        """
         self._conditions = conditions
         self._missing: Optional[List[str]] = None
-        self._teller = _WaitingForPublisher()
-        self._step = LockstepClient.existing()
-        if self._step is not None:
-            self._step.on_instant(self._look)
+        self._waiting_for = _WaitingForPublisher()
+        self._lockstep = LockstepClient.existing()
+        if self._lockstep is not None:
+            self._lockstep.on_instant(self._check)
         threading.Thread(target=self._watch, daemon=True).start()
 
     def _watch(self):
-        start, told = time.monotonic(), False
+        start, has_warned = time.monotonic(), False
         while not rospy.is_shutdown():
-            if self._step is None or not self._step.is_synchronized:
-                self._look()
+            if self._lockstep is None or not self._lockstep.is_synchronized:
+                self._check()
             if not self._missing:
-                if told:
-                    rospy.loginfo("nothing to wait for any more")
+                if has_warned:
+                    rospy.loginfo("all inputs are present")
                 return
-            if not told and time.monotonic() - start > PATIENCE_SECONDS:
-                told = True
+            if not has_warned and time.monotonic() - start > PATIENCE_SECONDS:
+                has_warned = True
                 for name in self._missing:
                     rospy.logwarn("waiting for %s", name)
                 _check_clock()
             time.sleep(POLL_SECONDS)
 
-    def _look(self):
+    def _check(self):
         if self._missing != []:
             missing = [name for name, is_met in self._conditions.items() if not is_met()]
             if missing != self._missing:
                 self._missing = missing
-                self._teller.tell(missing)
+                self._waiting_for.publish(missing)
 
 
 class StallReporter:
-    """Tells on ``~waiting_for`` whom a node that works already waits for, if it does so for a while."""
+    """Publishes on ``~waiting_for`` which nodes a running node waits for, if it waits for long."""
 
-    def __init__(self, patience: float = HELD_UP_SECONDS):
+    def __init__(self, patience: float = STALL_SECONDS):
+        """Report waits longer than ``patience`` [wall s]."""
         self._patience = patience
         self._since: Optional[float] = None
-        self._told: List[str] = []
-        self._teller = _WaitingForPublisher()
+        self._published: List[str] = []
+        self._waiting_for = _WaitingForPublisher()
 
     def update(self, names: List[str]) -> None:
-        """Those that are waited for now; to be called again and again."""
+        """Set the nodes that are waited for; call it periodically."""
         now = time.monotonic()
         if not names:
             self._since = None
         elif self._since is None:
             self._since = now
         is_long = self._since is not None and now - self._since > self._patience
-        to_tell = names if is_long else []
-        if to_tell != self._told:
-            self._told = to_tell
-            self._teller.tell(to_tell)
+        reported = names if is_long else []
+        if reported != self._published:
+            self._published = reported
+            self._waiting_for.publish(reported)
 
 
 class NodeReadiness:
-    """Whether another node has all that it waits for, by what it tells on its ``~waiting_for``."""
+    """Whether another node is ready, from its topic ``~waiting_for``."""
 
     def __init__(self, node: str):
         self._is_ready = False
-        rospy.Subscriber(f"{node}/{WAITING_FOR_TOPIC}", String, self._hear, queue_size=10)
+        rospy.Subscriber(f"{node}/{WAITING_FOR_TOPIC}", String, self._on_waiting_for, queue_size=10)
 
     def __call__(self) -> bool:
         return self._is_ready
 
-    def _hear(self, message):
+    def _on_waiting_for(self, message):
         self._is_ready = not message.data
 
 
@@ -120,4 +124,4 @@ def _check_clock():
         return
     published = {topic for topic, _ in rosgraph.Master(rospy.get_name()).getPublishedTopics("")}
     if "/clock" not in published:
-        rospy.logwarn("use_sim_time is true, but nobody publishes /clock")
+        rospy.logwarn("/use_sim_time is true, but no node publishes /clock: is the simulator running?")

@@ -1,4 +1,4 @@
-"""dynamic_reconfigure without compiled .cfg files: its parameters are tunables (planar.config.settings)."""
+"""dynamic_reconfigure servers for DynamicParameters (planar.config.parameters), without .cfg files."""
 
 from types import SimpleNamespace
 from typing import Any, Callable, Dict, Mapping, Sequence
@@ -14,10 +14,10 @@ LARGEST_INT = 2**31 - 1
 
 
 class _Server(Server):
-    """A server that talks to the parameter server once instead of once a parameter."""
+    """Server that writes all parameters with one request instead of one each."""
 
     def _copy_from_parameter_server(self):
-        """What the parameter server says is in the values in force already."""
+        """Do nothing: the values already come from the parameter server."""
 
     def _copy_to_parameter_server(self):
         names = [parameter["name"] for parameter in extract_params(self.type.config_description)]
@@ -25,26 +25,30 @@ class _Server(Server):
 
 
 class ReconfigureServer:
-    """Serves ``set_parameters`` below ``namespace`` (default: the node's own) for some tunables.
-
-    ``values``: those in force at the start, by name, which ``restore_defaults`` brings back.
-    ``change(values)`` is asked at each call and returns the values then in force.
-    """
+    """Serves ``set_parameters`` for some dynamic parameters."""
 
     def __init__(
         self,
-        tunables: Sequence[DynamicParameter],
+        parameters: Sequence[DynamicParameter],
         values: Mapping[str, Any],
         change: Callable[[Dict[str, Any]], Dict[str, Any]],
         namespace: str = "",
     ):
+        """Start the server.
+
+        Args:
+            tunables: Parameters.
+            values: Initial values by name, which ``restore_defaults`` restores.
+            change: Called with the requested values; returns the values that are used.
+            namespace: Namespace of the service; by default that of the node.
+        """
         self._change = change
-        self._started_with = dict(values)
+        self._initial = dict(values)
         self._is_up = False
-        self._server = _Server(_description(tunables, values), self._on_call, namespace)
+        self._server = _Server(_description(parameters, values), self._on_call, namespace)
 
     def close(self) -> None:
-        """Ends the service and its topics."""
+        """Shut down the service and its topics."""
         self._server.set_service.shutdown()
         self._server.descr_topic.unregister()
         self._server.update_topic.unregister()
@@ -54,23 +58,23 @@ class ReconfigureServer:
             not self._is_up
         ):  # the server's own first call, before it serves any: what the parameter server says
             self._is_up = True
-            config.update(self._started_with)
+            config.update(self._initial)
             return config
-        asked = {name: config[name] for name in self._started_with}
-        config.update(self._change(self._started_with if config[RESTORE] else asked))
+        requested = {name: config[name] for name in self._initial}
+        config.update(self._change(self._initial if config[RESTORE] else requested))
         config[RESTORE] = False
         return config
 
 
 class SettingsReconfigureServer(ReconfigureServer):
-    """Serves ``~set_parameters`` for the dynamic fields of ``settings``."""
+    """Serves ``~set_parameters`` for the dynamic fields of a settings dataclass."""
 
     def __init__(self, settings: Any, change: Callable[[Dict[str, Any]], Dict[str, Any]]):
         super().__init__(dynamic_parameters_of(type(settings)), dynamic_values(settings), change)
 
 
 def dynamic_values(settings: Any) -> Dict[str, Any]:
-    """The values of the dynamic fields, by official name."""
+    """Return the values of the dynamic fields by official name."""
     return {
         each.name: getattr(settings, each.field)
         for each in parameters_of(type(settings))
@@ -78,39 +82,39 @@ def dynamic_values(settings: Any) -> Dict[str, Any]:
     }
 
 
-def _description(tunables: Sequence[DynamicParameter], values: Mapping[str, Any]) -> SimpleNamespace:
-    """What dynamic_reconfigure's generator would have made of a .cfg file."""
-    parameters = [_parameter(tunable, values[tunable.name]) for tunable in tunables]
-    parameters.append(_entry(RESTORE, False, "bring back the values of the start", False, True))
+def _description(parameters: Sequence[DynamicParameter], values: Mapping[str, Any]) -> SimpleNamespace:
+    """Return what dynamic_reconfigure's generator would make of a .cfg file."""
+    entries = [_parameter(each, values[each.name]) for each in parameters]
+    entries.append(_entry(RESTORE, False, "restore the initial values", False, True))
     group = {"name": "Default", "type": "", "state": True, "cstate": "true", "id": 0, "parent": 0}
     tables = {
-        table: {parameter["name"]: parameter[key] for parameter in parameters}
+        table: {entry["name"]: entry[key] for entry in entries}
         for table, key in (("min", "min"), ("max", "max"), ("defaults", "default"), ("level", "level"))
     }
-    return SimpleNamespace(config_description={**group, "groups": [], "parameters": parameters}, **tables)
+    return SimpleNamespace(config_description={**group, "groups": [], "parameters": entries}, **tables)
 
 
-def _parameter(tunable: DynamicParameter, value) -> Dict[str, Any]:
-    kind = type(tunable.default)
+def _parameter(parameter: DynamicParameter, value) -> Dict[str, Any]:
+    kind = type(parameter.default)
     low: Any = ""
     high: Any = ""
     if kind is bool:
         low, high = False, True
     elif kind is not str:
-        # What the node was started with is offered too, however large.
-        low, high = _bound(kind, tunable.low), _bound(kind, max(tunable.high, value))
+        # The initial value is valid, however large.
+        low, high = _bound(kind, parameter.low), _bound(kind, max(parameter.high, value))
     edit_method = ""
-    if tunable.choices:
+    if parameter.choices:
         options = [
             {"name": choice.replace("-", "_"), "type": "str", "value": choice, "description": choice}
-            for choice in tunable.choices
+            for choice in parameter.choices
         ]
-        edit_method = repr({"enum": options, "enum_description": tunable.meaning})
-    return _entry(tunable.name, value, tunable.meaning, low, high, edit_method)
+        edit_method = repr({"enum": options, "enum_description": parameter.meaning})
+    return _entry(parameter.name, value, parameter.meaning, low, high, edit_method)
 
 
 def _bound(kind, value: float):
-    """A bound as a message can hold it."""
+    """Return a limit that fits into a message."""
     return kind(min(max(value, -LARGEST_INT), LARGEST_INT) if kind is int else value)
 
 

@@ -1,4 +1,4 @@
-"""The manners of a node: how it starts, fails and ends."""
+"""Start, failure and shutdown of a node."""
 
 import gc
 import logging
@@ -18,20 +18,24 @@ from planar_ros.node.entry import use_one_blas_thread
 from supervision.interruption import on_signals
 from supervision.streams import ignore_write_errors
 
-# Longer than any node needs to end in order.
+# Time limit for an orderly shutdown.
 SHUTDOWN_SECONDS = 5.0
 # The exit code of a node one of whose threads has died: EX_SOFTWARE of sysexits.h.
 THREAD_DIED = 70
-# Whether lines of the log leave out which topics the node has, by rospy.
+# rospy's option to omit the topics of the node from log messages.
 LOG_WITHOUT_TOPICS = "/rosout_disable_topics_generation"
-# What rospy raises where somebody publishes while it ends.
+# Exceptions of rospy for publishing during shutdown.
 CLOSED = ("publish() to a closed topic", "topic was closed during publish()")
 
 
 def run(node_name: str, start: Callable[[], object]) -> None:
-    """Names the node, calls ``start`` and stays until shutdown; what ``start`` returns is kept alive.
+    """Initialize a node, call ``start`` and wait until shutdown.
 
-    A PlanarError during the start is a user's mistake: one line on stderr, exit code 2.
+    A PlanarError raised by ``start`` is a user error: one line on stderr, exit code 2.
+
+    Args:
+        node_name: Name of the node.
+        start: Creates the objects of the node; its result is kept alive.
     """
     shut_down_on_signals()
     ignore_write_errors()
@@ -44,9 +48,11 @@ def run(node_name: str, start: Callable[[], object]) -> None:
     is_ending, is_over = threading.Event(), threading.Event()
     rospy.on_shutdown(is_ending.set)
     failures: List[str] = []
-    threading.excepthook = _ending_the_node(is_ending, failures)
-    logging.getLogger("rosout").addFilter(lambda record: not (is_ending.is_set() and _is_of_closing(record)))
-    # Called after rospy's own hooks: then the master and all peers have been told.
+    threading.excepthook = _shutdown_hook(is_ending, failures)
+    logging.getLogger("rosout").addFilter(
+        lambda record: not (is_ending.is_set() and _is_about_shutdown(record))
+    )
+    # Called after rospy's hooks, when the node is unregistered at the master and its peers.
     rospy.core.add_shutdown_hook(lambda _reason: is_over.set())
     try:
         node = start()
@@ -55,23 +61,26 @@ def run(node_name: str, start: Callable[[], object]) -> None:
     except PlanarError as error:
         fail(str(error))
     except Exception:
-        if not is_ending.is_set():  # else its topics were closed while it still worked
+        if not is_ending.is_set():  # otherwise its topics were closed during the start
             raise
         is_over.wait()
     finally:
-        # The interpreter would look for garbage among all of numba first, which takes a third of a second.
+        # Skip the garbage collection at exit, which takes a third of a second with numba.
         gc.freeze()
     if failures:
         sys.exit(THREAD_DIED)
 
 
 def init_node(name: str, **options: Any) -> None:
-    """Makes this process a node, which hears all publishers; the master forgets it once it has ended.
+    """Initialize this process as a node that misses no publisher and is unregistered completely when it ends.
 
-    ``options``: rospy's; signals are left to the caller.
+    rospy would subscribe to a parameter with each log message and never unsubscribe: the master would then
+    treat the next node of this name as a duplicate and shut down whichever node uses the port of the first
+    one.
 
-    rospy would subscribe to a parameter with each line of the log, and never unsubscribe: the master would
-    take the next node of that name for a second one, and shut down who has the first one's port by then.
+    Args:
+        name: Name of the node.
+        options: Further arguments of ``rospy.init_node``; signals are left to the caller.
     """
     extend_listen_backlog()
     merge_publisher_updates()
@@ -80,11 +89,13 @@ def init_node(name: str, **options: Any) -> None:
 
 
 def shut_down_on_signals(goes_on: bool = False) -> None:
-    """From now on signals shut the node down, in a thread; to be called before ``init_node``.
+    """Shut the node down in a thread when a signal arrives; call it before ``init_node``.
 
-    rospy would do it in the signal's handler, on top of whatever the main thread is at, and wait for ever for
-    a lock that this holds, as while it publishes. ``goes_on``: the process has more to do than to be a node,
-    and may take its time for that afterwards.
+    rospy would do it in the signal handler, on top of the main thread, and deadlock on a lock that the main
+    thread holds, e.g. while it publishes.
+
+    Args:
+        goes_on: Whether the process continues after the node has ended, without a time limit.
     """
     received: queue.SimpleQueue[int] = queue.SimpleQueue()
 
@@ -100,46 +111,50 @@ def shut_down_on_signals(goes_on: bool = False) -> None:
 
 
 def fail(text: str, exit_code: int = 2) -> None:
-    """Says why on stderr, in one line, and ends the node."""
+    """Print the reason in one line on stderr and end the node."""
     print(f"[{rospy.get_name()}] error: {text}", file=sys.stderr, flush=True)
     rospy.signal_shutdown(text)
     sys.exit(exit_code)
 
 
-def _is_of_closing(record: logging.LogRecord) -> bool:
-    """Whether a callback came upon a closed topic: rospy closes them before it says that it ends."""
+def _is_about_shutdown(record: logging.LogRecord) -> bool:
+    """Return whether a log record is about a topic that rospy closed before it reported the shutdown."""
     return any(words in record.getMessage() for words in CLOSED)
 
 
-def _ending_the_node(
+def _shutdown_hook(
     is_ending: threading.Event, failures: List[str]
 ) -> Callable[[threading.ExceptHookArgs], None]:
-    """A hook by which a thread that dies takes the node along, whose last words are the reason.
+    """Make a ``threading.excepthook`` that shuts the node down when a thread dies.
 
-    Half a node would be worse than none: nobody would start it anew. ``failures`` receives the reason. Topics
-    that are closed under a thread at the end are no reason.
+    A partial node would be worse than none, because nothing would restart it. Exceptions from topics that are
+    closed during shutdown are ignored.
+
+    Args:
+        is_ending: Set during shutdown.
+        failures: Receives the reason.
     """
-    tell_all = threading.excepthook
+    report = threading.excepthook
 
     def end(failure: threading.ExceptHookArgs) -> None:
         if is_ending.is_set() and issubclass(failure.exc_type, rospy.ROSException):
             return
-        tell_all(failure)
+        report(failure)
         if is_ending.is_set():
             return
         thread = failure.thread.name if failure.thread else "unknown"
-        reason = f"the thread {thread} has died of {failure.exc_type.__name__}: {failure.exc_value}"
+        reason = f"thread {thread} died of {failure.exc_type.__name__}: {failure.exc_value}"
         print(f"[{rospy.get_name()}] error: {reason}", file=sys.stderr, flush=True)
         failures.append(reason)
         _end_within(SHUTDOWN_SECONDS, THREAD_DIED)
-        # In a thread of its own: a hook that waits for this one, as rospy's may, would wait for ever.
+        # In another thread: a shutdown hook that joins this one would deadlock.
         threading.Thread(target=rospy.signal_shutdown, args=[reason], daemon=True).start()
 
     return end
 
 
 def _end_within(seconds: float, exit_code: int) -> threading.Timer:
-    """rospy waits for ever if the master goes away while a topic is being registered."""
+    """Exit after a time limit, since rospy blocks for ever if the master disappears during a registration."""
     watchdog = threading.Timer(seconds, os._exit, [exit_code])
     watchdog.daemon = True
     watchdog.start()
