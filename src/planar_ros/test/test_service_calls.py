@@ -37,7 +37,7 @@ def test_a_call_of_a_node_that_is_not_synchronised_is_handled_and_noted(server):
     server.call("/gazebo/reset_simulation", "/rosservice")
     assert server.handled == ["/gazebo/reset_simulation"]
     assert server.noted == [
-        "the service /gazebo/reset_simulation was called by /rosservice, which is not synchronised"
+        "the service /gazebo/reset_simulation was called by /rosservice, which is not synchronized"
     ]
 
 

@@ -54,9 +54,7 @@ class ReconfigureServer:
         self._server.update_topic.unregister()
 
     def _on_call(self, config, level):
-        if (
-            not self._is_up
-        ):  # the server's own first call, before it serves any: what the parameter server says
+        if not self._is_up:  # the first call of the server itself: the values on the parameter server
             self._is_up = True
             config.update(self._initial)
             return config
