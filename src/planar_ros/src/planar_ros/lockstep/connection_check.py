@@ -8,17 +8,11 @@ import rosgraph
 import rospy
 
 from planar_ros.lockstep.transport import ANSWER_TOPIC, STATIC_TOPIC
+from supervision.ros.node_api import TimedTransport
 
 ANSWER_SECONDS = 1.0
 _UNAVAILABLE = (OSError, xmlrpc.client.Error)
 NodesByName = Dict[str, List[str]]
-
-
-class _TimedTransport(xmlrpc.client.Transport):
-    def make_connection(self, host):
-        connection = super().make_connection(host)
-        connection.timeout = ANSWER_SECONDS
-        return connection
 
 
 class ConnectionCheck:
@@ -89,6 +83,6 @@ class ConnectionCheck:
 
 
 def _query(uri: str, method: str, *arguments: str) -> Any:
-    proxy: Any = xmlrpc.client.ServerProxy(uri, transport=_TimedTransport())
+    proxy: Any = xmlrpc.client.ServerProxy(uri, transport=TimedTransport(ANSWER_SECONDS))
     _code, _status, value = getattr(proxy, method)(rospy.get_name(), *arguments)
     return value

@@ -34,7 +34,7 @@ def read_urdf(text: str, where: str, find_file: FindFile) -> Tuple[RobotStructur
         RobotError: The description cannot be used.
     """
     robot = _parse(text, where)
-    reader = _Reader(find_file)
+    reader = _UrdfReader(find_file)
     try:
         links = [reader.link(link) for link in robot.children("link")]
         joints = [_joint(joint) for joint in robot.children("joint")]
@@ -59,7 +59,7 @@ def _parse(text: str, where: str) -> Element:
     return Element(xml, where)
 
 
-class _Reader:
+class _UrdfReader:
     """Reads links and collects warnings about missing files."""
 
     def __init__(self, find_file: FindFile):

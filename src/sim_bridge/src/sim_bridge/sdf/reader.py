@@ -49,7 +49,7 @@ def load_world(path, model_folders: Sequence[Path] = (), strict: bool = False) -
     """
     path = Path(path)
     world = parse(path).required("world")
-    reader = _Reader(tuple(Path(folder) for folder in model_folders), SkippedElements(strict))
+    reader = _SdfReader(tuple(Path(folder) for folder in model_folders), SkippedElements(strict))
     reader.read_world(world, path.parent)
     return reader.world(world.name, _gravity(world))
 
@@ -69,7 +69,7 @@ def read_model(
     Raises:
         WorldError: The text cannot be read or holds a value that is not valid.
     """
-    reader = _Reader(tuple(model_folders), SkippedElements(strict))
+    reader = _SdfReader(tuple(model_folders), SkippedElements(strict))
     root = parse_text(xml, name)
     include = root.child("world", "include")
     if include is not None:
@@ -79,7 +79,7 @@ def read_model(
     return reader.world(name)
 
 
-class _Reader:
+class _SdfReader:
     """Collects bodies, joints, robots, lights, trajectories and warnings."""
 
     def __init__(self, model_folders: Tuple[Path, ...], warnings: SkippedElements):

@@ -14,12 +14,20 @@ ANSWER_SECONDS = 1.0
 _SILENCE = (OSError, xmlrpc.client.Error)
 
 
-class _TimedTransport(xmlrpc.client.Transport):
-    """Transport with a time-out, for nodes that hang."""
+class TimedTransport(xmlrpc.client.Transport):
+    """Transport with a time-out, for nodes that hang.
+
+    Args:
+        seconds: Time-out of a response [s].
+    """
+
+    def __init__(self, seconds: float = ANSWER_SECONDS):
+        super().__init__()
+        self._seconds = seconds
 
     def make_connection(self, host):
         connection = super().make_connection(host)
-        connection.timeout = ANSWER_SECONDS
+        connection.timeout = self._seconds
         return connection
 
 
@@ -80,6 +88,6 @@ def _receivers(uri: str) -> Set[Tuple[str, str]]:
 
 def _ask(uri: str, question: str, *arguments: str) -> Tuple[int, Any]:
     """Return code and value of a call."""
-    proxy: Any = xmlrpc.client.ServerProxy(uri, transport=_TimedTransport())
+    proxy: Any = xmlrpc.client.ServerProxy(uri, transport=TimedTransport())
     code, _status, value = getattr(proxy, question)(CALLER, *arguments)
     return code, value
