@@ -110,3 +110,19 @@ def test_two_traces_differ_at_the_first_entry_that_only_one_has():
 def test_a_folder_without_a_trace_is_refused(tmp_path):
     with pytest.raises(SettingsError, match=r"trace\.txt: No such file"):
         read_trace(tmp_path)
+
+
+@pytest.mark.parametrize("line_break", ["\n", "\r", "\u2028"])
+def test_a_line_break_in_a_name_does_not_end_a_line(line_break, tmp_path):
+    hashes = set()
+    for max_in_memory in (5, 1000):
+        trace = Trace(max_in_memory)
+        trace.start(2 * SECOND)
+        for second in range(2, 60):
+            trace.add(TraceEntry(second * SECOND, "/state", "/pick_objects", f"post{line_break}card: 1"))
+        trace.end(TraceEntry(60 * SECOND, "/state", "/pick_objects", f"post{line_break}card: 5"))
+        trace.add_unstamped("marker cup" + line_break)
+        write_trace(tmp_path, trace.content())
+        assert len(read_trace(tmp_path)) == 60
+        hashes.add(hash_of(trace.content()))
+    assert len(hashes) == 1

@@ -33,7 +33,7 @@ class TraceEntry(NamedTuple):
     text: str
 
     def __str__(self) -> str:
-        return f"{self.stamp / 1e9:.9f} {self.topic} {self.node} {self.text}"
+        return f"{self.stamp / 1e9:.9f} {self.topic} {self.node} {_on_one_line(self.text)}"
 
 
 class TraceDifference(NamedTuple):
@@ -70,8 +70,9 @@ class Trace:
 
     def add_unstamped(self, text: str) -> None:
         """Add text without a stamp; only the order of such texts is compared."""
-        if self._unstamped[-1:] != [text]:
-            self._unstamped.append(text)
+        line = _on_one_line(text)
+        if self._unstamped[-1:] != [line]:
+            self._unstamped.append(line)
 
     def start(self, stamp: int) -> None:
         """Start the trace at a goal; the first one counts."""
@@ -129,6 +130,13 @@ class Trace:
                 stamp, is_outcome, text = line.rstrip("\n").split(" ", 2)
                 if int(stamp) <= last or is_outcome == "1":
                     yield text
+
+
+def _on_one_line(text: str) -> str:
+    """Return text with line breaks and other unprintable characters escaped: names may contain them."""
+    if text.isprintable():
+        return text
+    return "".join(each if each.isprintable() else each.encode("unicode_escape").decode() for each in text)
 
 
 def hash_of(content: bytes) -> str:
