@@ -1,7 +1,9 @@
 import pytest
 import rospy
+from geometry_msgs.msg import Point, Pose, PoseStamped
 from home_service_msgs.msg import DeliverActionGoal, DeliverGoal, Delivery, DeliveryState, MissionState
-from nav_msgs.msg import Odometry
+from nav_msgs.msg import Odometry, Path
+from std_msgs.msg import String
 from visualization_msgs.msg import Marker
 
 from home_service.judging.verdict import ERRAND, OBJECTS
@@ -171,3 +173,30 @@ def test_states_published_before_a_reset_of_time_do_not_wait_for_that_time_again
     referee._on_mission(arrival(9.1))
     referee._on_truth(truth(0.1, 0.0))
     assert referee.mission_record.deliveries[0].pickup_error == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize("state", ["", "delivered", "failed", "cancelled"])
+def test_a_robot_without_a_mission_waits_for_one(state):
+    serving = Referee(PLACES, log=lambda line: None, idle_text="waiting for a mission")
+    serving._on_state(String(state))
+    assert serving.status().startswith("waiting for a mission: ")
+    serving._on_state(String("picking up"))
+    assert serving.status().startswith("picking up: ")
+
+
+def plan(*points_x):
+    poses = [PoseStamped(pose=Pose(position=Point(x, 0.0, 0.0))) for x in points_x]
+    return Path(poses=poses)
+
+
+def test_the_distance_to_go_counts_down_along_the_plan(referee):
+    referee._on_truth(truth(1.0, 0.0))
+    assert "to go" not in referee.status()
+    referee._on_plan(plan(0.0, 2.0, 5.0))
+    for stamp, x, to_go in ((2.0, 1.0, "4.0"), (3.0, 4.5, "0.5"), (4.0, 5.2, "0.0")):
+        referee._on_truth(truth(stamp, x))
+        assert f"running: {to_go} m to go, " in referee.status()
+    referee._on_plan(plan(5.2, 2.2))
+    assert "3.0 m to go, " in referee.status()
+    referee._on_result(None)
+    assert "to go" not in referee.status()

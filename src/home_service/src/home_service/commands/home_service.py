@@ -41,7 +41,11 @@ class HomeService(GraphOptions, MissionOptions):
         ).with_respawn(*RESPAWNED)
         if self.serve:
             return run_until_interrupted(
-                self, launch, "send missions to the action deliver; Ctrl-C ends", places
+                self,
+                launch,
+                "send missions to the action deliver; Ctrl-C ends",
+                places,
+                idle_text="waiting for a mission",
             )
         return run_to_completion(self, launch, places, {ERRAND, OBJECTS if self.mission else MARKERS})
 

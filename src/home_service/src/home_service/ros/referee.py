@@ -43,12 +43,12 @@ class Referee:
         places: Places by name; places of a mission that is sent to the robot are added.
         log: Called with each line for people.
         logs_goals: Log goals of move_base and their outcomes, too.
+        idle_text: State in words while no mission is under way; empty: the last state.
 
     Attributes:
         mission_record: Observations of the run.
         state: Current state of the mission.
         distance_driven: True distance driven [m].
-        remaining_distance: Length of the latest plan [m]; None without a goal.
         first_motion_wall: Wall-clock time of the first motion [s].
         start_wall: Monotonic time of the first ground truth [s].
         truth: Latest true pose.
@@ -56,12 +56,17 @@ class Referee:
     """
 
     def __init__(
-        self, places: Mapping[str, NamedPlace], log: Callable[[str], None], logs_goals: bool = False
+        self,
+        places: Mapping[str, NamedPlace],
+        log: Callable[[str], None],
+        logs_goals: bool = False,
+        idle_text: str = "",
     ):
         self.mission_record = MissionRecord()
         self.state = ""
         self.distance_driven = 0.0
-        self.remaining_distance: Optional[float] = None
+        # True distance driven at the end of the latest plan [m]; None without a goal.
+        self._plan_end: Optional[float] = None
         self.first_motion_wall: Optional[float] = None
         self.start_wall = 0.0
         self.truth: Optional[Pose2] = None
@@ -70,6 +75,7 @@ class Referee:
         self._start_time = 0.0
         self._places = dict(places)
         self._log = log
+        self._idle_text = idle_text
         self._recent: Deque[Tuple[float, Pose2]] = deque(maxlen=TRUTH_HISTORY)
         self._pending_missions: Deque[MissionState] = deque()
         self._deliveries = DeliveryMonitor(self._places, self.mission_record.deliveries, log)
@@ -122,11 +128,17 @@ class Referee:
 
     def status(self) -> str:
         """Return the current state in one line."""
-        to_go = "" if self.remaining_distance is None else f"{self.remaining_distance:.1f} m to go, "
+        remaining = self.remaining_distance
+        to_go = "" if remaining is None else f"{remaining:.1f} m to go, "
         return (
-            f"{self.state or 'running'}: {to_go}simulated {self.simulated_seconds:.1f} s, "
+            f"{self._activity}: {to_go}simulated {self.simulated_seconds:.1f} s, "
             f"{self.real_time_factor:.1f} x real time"
         )
+
+    @property
+    def _activity(self) -> str:
+        is_idle = self.state in ("", *FINAL_STATES)
+        return (is_idle and self._idle_text) or self.state or "running"
 
     def result_fields(self) -> Dict[str, Any]:
         """Return fields of result.json; none if it was not started."""
@@ -141,6 +153,11 @@ class Referee:
             **self.mission_record.result_fields(),
             **({} if self._goals is None else self._goals.result_fields()),
         }
+
+    @property
+    def remaining_distance(self) -> Optional[float]:
+        """Length of the latest plan less the distance driven since [m]; None without a goal."""
+        return None if self._plan_end is None else max(0.0, self._plan_end - self.distance_driven)
 
     @property
     def simulated_seconds(self) -> float:
@@ -233,11 +250,12 @@ class Referee:
 
     def _on_plan(self, message):
         points = [(pose.pose.position.x, pose.pose.position.y) for pose in message.poses]
-        self.remaining_distance = sum(math.dist(a, b) for a, b in zip(points, points[1:]))
+        length = sum(math.dist(a, b) for a, b in zip(points, points[1:]))
+        self._plan_end = self.distance_driven + length
 
     def _on_result(self, _message):
         """A goal has ended: no distance remains."""
-        self.remaining_distance = None
+        self._plan_end = None
 
     def _on_log(self, message):
         if message.file == CONNECTION_LOG_FILE:

@@ -43,7 +43,11 @@ def run_to_completion(
 
 
 def run_until_interrupted(
-    options: RunOptions, launch: LaunchPlan, hint: str, places: Mapping[str, NamedPlace] = {}
+    options: RunOptions,
+    launch: LaunchPlan,
+    hint: str,
+    places: Mapping[str, NamedPlace] = {},
+    idle_text: str = "",
 ) -> int:
     """Run a graph for interactive use until Ctrl-C, and print where its master is.
 
@@ -52,12 +56,13 @@ def run_until_interrupted(
         launch: What to launch.
         hint: Line that is printed once the graph is up.
         places: Places by name.
+        idle_text: State in words while no mission is under way; empty: the last state.
 
     Returns:
         Exit code; Ctrl-C is a success once the graph is up.
     """
     display = Display()
-    referee = Referee(places, display.print, logs_goals=True)
+    referee = Referee(places, display.print, logs_goals=True, idle_text=idle_text)
     with Run(options, launch, referee, RunRecorder(places), display) as run:
         display.print(f"ROS_MASTER_URI={os.environ['ROS_MASTER_URI']}")
         try:
