@@ -142,3 +142,10 @@ def test_after_time_has_jumped_back_goals_are_accepted_whatever_the_last_stamp(s
     server.on_time_jump()
     server.action_server.internal_goal_callback(goal)
     assert server.is_new_goal_available()
+
+
+def test_a_cancel_stamped_far_ahead_does_not_cancel_later_goals(server):
+    rospy.rostime._set_rostime(rospy.Time(10))
+    server.action_server.internal_cancel_callback(GoalID(stamp=rospy.Time(2_000_000_000)))
+    server.action_server.internal_goal_callback(goal_at(12))
+    assert server.is_new_goal_available()

@@ -13,6 +13,8 @@ from planar_ros.node.flush import flush_and_close
 MAX_ENDED_GOALS, MAX_TRACKED_GOALS = 20, 60
 # ROS time within which a server that received a goal publishes its status.
 ACKNOWLEDGE_TIME = rospy.Duration(1)
+# By which the stamp of a cancel may be ahead of this node's clock.
+MAX_CLOCK_SKEW = rospy.Duration(1)
 KILLED_TEXT = "Aborting on the goal because the node has been killed"
 
 
@@ -39,6 +41,7 @@ class ActionServer(actionlib.SimpleActionServer):
         # In lock-step no status is published while clients connect, since only some of them would receive it.
         if step.is_synchronized:
             server.publish_status = lambda: None
+        self._cancel, server.internal_cancel_callback = server.internal_cancel_callback, self._on_cancel
         super().start()
         server.publish_status = self._schedule_status
         if server.status_timer is not None:
@@ -58,6 +61,13 @@ class ActionServer(actionlib.SimpleActionServer):
                 if earlier.get_goal() is not None and earlier.get_goal_id().stamp > now:
                     earlier.get_goal_id().stamp = rospy.Time()
         super().internal_goal_callback(goal)
+
+    def _on_cancel(self, goal_id: Any) -> None:
+        """Cancel goals; a stamp ahead of time does not cancel goals that are sent later."""
+        server = self.action_server
+        with server.lock:
+            self._cancel(goal_id)
+            server.last_cancel = min(server.last_cancel, rospy.Time.now() + MAX_CLOCK_SKEW)
 
     def _clear_last_cancel(self) -> None:
         """Keep cancel requests from before a jump back of time from cancelling goals after it."""
