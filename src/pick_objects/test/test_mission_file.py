@@ -1,6 +1,9 @@
+import time
+
 import pytest
 
 from pick_objects import Delivery, ErrandSettings, load_mission, parse_mission
+from pick_objects.mission_file import _check_cycles
 from planar import Pose2, SettingsError, grid_from_picture
 from planar.maps.places import NamedPlace
 
@@ -106,3 +109,17 @@ def test_a_place_in_a_wall_is_reported_with_line_and_key(picture, complaint):
     with pytest.raises(SettingsError, match=complaint):
         parse(grid=grid_from_picture(picture))
     assert parse(grid=grid_from_picture("...")).places
+
+
+def chain(count):
+    """Deliveries each of which waits for the next one in the file."""
+    entry = "  - {{name: d{0}, object: o{0}, from: door, to: desk, after: {1}}}"
+    entries = [entry.format(i, f"d{i + 1}" if i + 1 < count else "[]") for i in range(count)]
+    return "places:\n  desk: {x: 1.0, y: 1.0}\ndeliveries:\n" + "\n".join(entries)
+
+
+def test_a_long_chain_of_deliveries_is_checked_in_linear_time():
+    deliveries = list(parse(chain(2000)).deliveries)
+    start = time.process_time()
+    _check_cycles(deliveries, {})
+    assert time.process_time() - start < 1.0

@@ -159,13 +159,21 @@ def _check_cycles(deliveries: List[Delivery], lines: Mapping[str, Table]) -> Non
         if delivery.object_name in latest_of_object:
             waits_for[delivery.name].add(latest_of_object[delivery.object_name])
         latest_of_object[delivery.object_name] = delivery.name
-    while waits_for:
-        free = [name for name, others in waits_for.items() if not others & set(waits_for)]
-        if not free:
-            name = next(name for name in waits_for if set(lines[name].texts("after")) & set(waits_for))
-            raise lines[name].error_at("after", f"makes a cycle: {', '.join(waits_for)} wait for each other")
-        for name in free:
-            del waits_for[name]
+    awaited_by: Dict[str, List[str]] = {name: [] for name in waits_for}
+    for name, others in waits_for.items():
+        for other in others:
+            awaited_by[other].append(name)
+    free = [name for name, others in waits_for.items() if not others]
+    while free:  # Kahn's algorithm
+        done = free.pop()
+        del waits_for[done]
+        for name in awaited_by[done]:
+            waits_for[name].remove(done)
+            if not waits_for[name]:
+                free.append(name)
+    if waits_for:
+        name = next(name for name in waits_for if waits_for.keys() & lines[name].texts("after"))
+        raise lines[name].error_at("after", f"makes a cycle: {', '.join(waits_for)} wait for each other")
 
 
 def _check_object_locations(deliveries: List[Delivery], lines: Mapping[str, Table]) -> None:
