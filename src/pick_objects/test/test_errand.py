@@ -208,7 +208,7 @@ def test_the_shortest_order_uses_measured_paths_and_respects_dependencies():
     assert [job.delivery.name for job in task.jobs] == ["post", "tea", "back"]
 
 
-def test_a_cancelled_delivery_is_skipped_and_the_others_are_made():
+def test_a_cancelled_delivery_is_skipped_the_others_are_made_and_the_mission_is_no_success():
     task = mission(TEA, POST)
     task.advance(0.0)
     task.advance(1.0, GoalReached())
@@ -217,7 +217,17 @@ def test_a_cancelled_delivery_is_skipped_and_the_others_are_made():
     task.cancel("tea")
     assert task.advance(3.0) == DriveToPlace(DROPOFF, 1)
     assert not task.object_locations["cup"].is_carried
+    assert play(task, event=GoalReached())[-1] == FinishTask(False, "1 of 2 delivered, 1 cancelled")
+    assert task.state is ErrandState.CANCELLED
+
+
+def test_an_added_delivery_may_be_cancelled_without_failing_the_mission():
+    task = mission(TEA)
+    task.advance(0.0)
+    task.add(POST)
+    task.cancel("post")
     assert play(task, event=GoalReached())[-1] == FinishTask(True, "1 of 2 delivered, 1 cancelled")
+    assert task.state is ErrandState.DELIVERED
 
 
 @pytest.mark.parametrize("steps", range(8))

@@ -1,7 +1,7 @@
 """Execution of a mission: one delivery after the other."""
 
 from dataclasses import dataclass
-from typing import Dict, List, Mapping, Optional, Sequence, Tuple, Union
+from typing import Collection, Dict, List, Mapping, Optional, Sequence, Set, Tuple, Union
 
 from pick_objects.approach import DriveToPlace
 from pick_objects.delivery_execution import DeliveryExecution
@@ -57,6 +57,7 @@ class Errand:
 
     Attributes:
         object_locations: Location of each object, by name.
+        added: Names of the deliveries that were added to the mission.
         is_cancelled: The whole mission was cancelled.
         reason: How the mission ended, in words; empty while it is running.
     """
@@ -64,6 +65,7 @@ class Errand:
     def __init__(self, mission: Mission):
         self.mission = mission
         self.object_locations: Dict[str, ObjectLocation] = {}
+        self.added: Set[str] = set()
         self.reason = ""
         self._place_objects()
         self._schedule = DeliverySchedule(mission)
@@ -106,6 +108,7 @@ class Errand:
         self._refuse_if_over()
         self.mission = self.mission.with_delivery(delivery)
         added = self.mission.deliveries[-1]
+        self.added.add(added.name)
         self._schedule.add(added)
         self._place_objects()
         return added
@@ -115,6 +118,7 @@ class Errand:
         jobs: Sequence[DeliveryJob],
         object_locations: Mapping[str, ObjectLocation],
         is_cancelled: bool = False,
+        added: Collection[str] = (),
     ) -> None:
         """Restore the state of an interrupted errand of this mission; call it before the first advance.
 
@@ -122,10 +126,12 @@ class Errand:
             jobs: Deliveries in their order; at most one is under way, and that one is CARRYING.
             object_locations: Location of each object.
             is_cancelled: The mission was cancelled.
+            added: Names of the deliveries that were added.
         """
         self._schedule.jobs = list(jobs)
         self.object_locations.update(object_locations)
         self.is_cancelled = is_cancelled
+        self.added = set(added)
 
     def cancel(self, name: str = "") -> None:
         """Cancel a delivery, or the whole mission; an object on the robot is set down.
@@ -257,9 +263,15 @@ class Errand:
     def _final_state(self) -> ErrandState:
         if self._schedule.has_failed and not self.is_cancelled:
             return ErrandState.FAILED
-        if self.is_cancelled or all(job.stage is DeliveryStage.CANCELLED for job in self.jobs):
+        if self.is_cancelled or self._lacks_cancelled:
             return ErrandState.CANCELLED
         return ErrandState.DELIVERED
+
+    @property
+    def _lacks_cancelled(self) -> bool:
+        """Whether a cancelled delivery is missing: one of the mission as it was given, or all of them."""
+        cancelled = {job.delivery.name for job in self.jobs if job.stage is DeliveryStage.CANCELLED}
+        return bool(cancelled - self.added) or len(cancelled) == len(self.jobs)
 
     def _summary(self, reason: str) -> str:
         if len(self.jobs) == 1:
