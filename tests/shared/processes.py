@@ -3,9 +3,11 @@
 import contextlib
 import os
 import uuid
+import xmlrpc.client
 from pathlib import Path
 
 import psutil
+import rosgraph
 
 
 def marked_environment():
@@ -27,3 +29,12 @@ def processes_of(mark):
 def processes_with(mark):
     """Return the command lines of the processes with the marker."""
     return [" ".join(words) for _, words in processes_of(mark)]
+
+
+def node_pid(name):
+    """Return the process id of a node; None if it does not answer."""
+    try:
+        uri = rosgraph.Master("/test").lookupNode(name)
+        return xmlrpc.client.ServerProxy(uri).getPid("/test")[2]
+    except (OSError, rosgraph.MasterError, xmlrpc.client.Error):
+        return None

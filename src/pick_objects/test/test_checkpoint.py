@@ -9,6 +9,7 @@ from pick_objects import (
     DeliveryStage,
     DriveToPlace,
     Errand,
+    ErrandState,
     FinishTask,
     GoalReached,
     Mission,
@@ -16,6 +17,7 @@ from pick_objects import (
     errand_mission,
     resume_errand,
 )
+from pick_objects.checkpoint import CheckpointError
 from planar import Pose2
 from planar.maps.places import NamedPlace
 
@@ -75,3 +77,48 @@ def test_an_added_delivery_survives_a_restart():
 
 def test_a_checkpoint_of_another_mission_is_ignored():
     assert resume_errand(errand_mission(A, B), checkpoint_of(Errand(MISSION))) is None
+
+
+def test_after_a_restart_an_added_delivery_may_still_be_cancelled_without_failing_the_mission():
+    errand = Errand(errand_mission(A, B))
+    errand.add(Delivery("more", "cup", "a", "b"))
+    again = resume_errand(errand_mission(A, B), json.loads(json.dumps(checkpoint_of(errand))))
+    carry(again)
+    again.cancel("more")
+    again.advance(20.0, GoalReached())
+    assert again.advance(30.0) is None
+    assert again.state is ErrandState.DELIVERED
+
+
+RECORD = json.loads(json.dumps(checkpoint_of(Errand(MISSION))))
+JOB, WHERE = RECORD["jobs"][0], RECORD["object_locations"]["cup"]
+
+
+@pytest.mark.parametrize(
+    "record",
+    [
+        "carrying",
+        [],
+        {},
+        {"mission": MISSION.name},
+        {**RECORD, "jobs": None},
+        {**RECORD, "jobs": [7]},
+        {**RECORD, "jobs": [*RECORD["jobs"], JOB]},
+        {**RECORD, "jobs": [{**JOB, "stage": "LOST"}, RECORD["jobs"][1]]},
+        {**RECORD, "jobs": [{**JOB, "stage": "CARRYING"}, RECORD["jobs"][1]]},
+        {**RECORD, "jobs": [{**JOB, "attempts": "many"}, RECORD["jobs"][1]]},
+        {**RECORD, "jobs": [{**JOB, "reason": 3}, RECORD["jobs"][1]]},
+        {
+            **RECORD,
+            "jobs": [*RECORD["jobs"], {**JOB, "delivery": {**JOB["delivery"], "name": "x", "after": ["y"]}}],
+        },
+        {**RECORD, "object_locations": {"cup": 1}},
+        {**RECORD, "object_locations": {"cup": {**WHERE, "is_carried": True}}},
+        {**RECORD, "object_locations": {"cup": {**WHERE, "place": 5}}},
+        {**RECORD, "object_locations": {"cup": {**WHERE, "pose": {"x": "a", "y": 0.0, "yaw": 0.0}}}},
+        {**RECORD, "object_locations": {"cup": {**WHERE, "pose": {"x": 1e400, "y": 0.0, "yaw": 0.0}}}},
+    ],
+)
+def test_a_checkpoint_of_another_shape_is_an_error_of_its_own(record):
+    with pytest.raises(CheckpointError):
+        resume_errand(MISSION, record)

@@ -49,7 +49,8 @@ class AddMarkersNode:
             self._locate = lambda: None
         else:
             self._checkpoint = ParameterCheckpoint() if settings.resume else None
-            stage = ParcelStage((self._checkpoint and self._checkpoint.latest) or ParcelStage.WAITING)
+            left = None if self._checkpoint is None else self._checkpoint.recovered(ParcelStage)
+            stage = ParcelStage.WAITING if left is None else left
             self._parcel = CarriedParcel(*places, settings.pickup_seconds, stage)
             self._locate = self._locator(settings.pose_source)
         ReadinessMonitor(self._conditions())

@@ -14,11 +14,10 @@ import rospy
 
 from amcl_lite.belief import Belief, load_particles, save_particles
 from amcl_lite.config import InitialPose, NodeSettings
-from amcl_lite.errors import LocalizationError
 from amcl_lite.localizer import is_valid_initial_pose
 from planar import Pose2
 from planar.config.parameters import official_names
-from planar_ros.node.checkpoint import FileCheckpoint
+from planar_ros.node.checkpoint import FileCheckpoint, SavedFile
 from planar_ros.node.parameters import ParameterWriter, read_settings
 from planar_ros.node.reconfigure import RESTORE
 
@@ -47,18 +46,7 @@ class PoseCheckpoint:
 
     def load_belief(self) -> Optional[Belief]:
         """Return the belief of a crashed node of this name, or None."""
-        found = self._checkpoint.latest
-        if found is None:
-            return None
-        try:
-            particles = load_particles(found.path)
-        except LocalizationError as error:
-            rospy.logwarn(
-                "the checkpoint of the crashed node cannot be read, starting at the initial pose: %s", error
-            )
-            return None
-        poses = {name: Pose2(**found.value[name]) for name in ("base_in_odom", "odom_in_map")}
-        return Belief(particles, is_lost=found.value["is_lost"], **poses)
+        return self._checkpoint.recovered(_belief)
 
     def save_if_due(self, rate: float, belief: Belief, base_in_odom: Pose2, covariance) -> None:
         """Save pose and belief at most at ``rate`` [Hz]; never for 0 or less."""
@@ -81,3 +69,8 @@ class PoseCheckpoint:
     def _save_belief(self, belief: Belief) -> None:
         poses = {"base_in_odom": asdict(belief.base_in_odom), "odom_in_map": asdict(belief.odom_in_map)}
         self._checkpoint.save(partial(save_particles, belief.particles), {**poses, "is_lost": belief.is_lost})
+
+
+def _belief(saved: SavedFile) -> Belief:
+    poses = {name: Pose2.from_dict(saved.value[name]) for name in ("base_in_odom", "odom_in_map")}
+    return Belief(load_particles(saved.path), is_lost=bool(saved.value["is_lost"]), **poses)

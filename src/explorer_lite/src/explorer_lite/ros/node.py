@@ -2,7 +2,7 @@
 
 import time
 from dataclasses import asdict, replace
-from typing import Optional, Union
+from typing import Any, Optional, Tuple, Union
 
 import rospy
 from geometry_msgs.msg import Point, PoseStamped
@@ -38,9 +38,10 @@ STOP_SECONDS = 2.0
 
 
 class Autostart:
-    """Sends the node an ``explore`` goal at the start, and resumes the exploration after a crash.
+    """Sends the node an ``explore`` goal at the start, and resumes this exploration after a crash.
 
-    The goal is published on the action's topic, so other clients of the action see a normal goal.
+    The goal is published on the action's topic, so other clients of the action see a normal goal. The
+    checkpoint belongs to this goal alone, not to goals of other clients.
 
     Args:
         return_to_start: Whether the robot returns to its start pose at the end.
@@ -49,24 +50,31 @@ class Autostart:
     def __init__(self, return_to_start: bool):
         self._goal = ExploreActionGoal()
         self._goal.goal.return_to_start = return_to_start
+        self._goal.goal_id.id = f"{rospy.get_name()}-autostart"
         self._goals = rospy.Publisher("explore/goal", ExploreActionGoal, queue_size=1)
         self._checkpoint = ParameterCheckpoint()
-        self._is_sent = False
+        left = self._checkpoint.recovered(_autostart_checkpoint)
+        self.start, self._is_sent = (None, False) if left is None else left
 
-    @property
-    def start(self) -> Optional[Pose2]:
-        """Pose to return to, if it was saved by an earlier process."""
-        return None if self._checkpoint.latest is None else Pose2(**self._checkpoint.latest)
+    def is_goal(self, goal_id: str) -> bool:
+        """Whether it has sent the goal of this id."""
+        return goal_id == self._goal.goal_id.id
 
-    def save(self, start: Pose2) -> None:
-        """Save the pose to return to."""
-        self._checkpoint.save(asdict(start))
+    def save(self, start: Optional[Pose2], is_over: bool = False) -> None:
+        """Save the pose to return to, and whether the exploration has ended."""
+        self._checkpoint.save({"start": start and asdict(start), "is_over": is_over})
 
     def send_goal(self) -> None:
         """Send the goal once the action server is connected."""
         if not self._is_sent and self._goals.get_num_connections() > 0:
             self._is_sent = True
             self._goals.publish(self._goal)
+
+
+def _autostart_checkpoint(record: Any) -> Tuple[Optional[Pose2], bool]:
+    """Return the pose to return to, and whether the exploration has ended."""
+    start = record["start"]
+    return None if start is None else Pose2.from_dict(start), bool(record["is_over"])
 
 
 class Explore:
@@ -115,11 +123,13 @@ class Explore:
             settings = replace(settings, field_of_view=self._field_of_view)
         if self._field_of_view > 0.0:
             self._scans.unregister()
-        before = None if self._autostart is None else self._autostart.start
-        explorer = Explorer(settings, goal.return_to_start, before)
+        autostart = self._autostart
+        if autostart is not None and not autostart.is_goal(self._server.current_goal.get_goal_id().id):
+            autostart = None
+        explorer = Explorer(settings, goal.return_to_start, autostart and autostart.start)
         start = rospy.get_time()
         rospy.loginfo("exploring")
-        end = self._explore(explorer)
+        end = self._explore(explorer, autostart)
         if rospy.is_shutdown():  # the action has then been aborted
             return
         self._stop()
@@ -137,8 +147,10 @@ class Explore:
         else:
             rospy.logwarn("%s", end.reason)
             self._server.set_aborted(result, end.reason)
+        if autostart is not None:
+            autostart.save(explorer.start, is_over=True)
 
-    def _explore(self, explorer: Explorer) -> Optional[FinishTask]:
+    def _explore(self, explorer: Explorer, autostart: Optional[Autostart]) -> Optional[FinishTask]:
         """Explore to the end; None if the goal was cancelled."""
         last_map, event, goal = None, None, None
         next_feedback = 0.0
@@ -157,8 +169,8 @@ class Explore:
                 last_map, event = grid, None
             if isinstance(order, FinishTask):
                 return order
-            if self._autostart is not None and explorer.start is not None:
-                self._autostart.save(explorer.start)
+            if autostart is not None and explorer.start is not None:
+                autostart.save(explorer.start)
             if isinstance(order, SendGoal):
                 goal = order.pose
                 self._move_base.send(goal)

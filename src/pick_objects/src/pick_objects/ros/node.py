@@ -62,14 +62,15 @@ class PickObjectsNode:
         """Carry out the mission and return its end; with ``~serve`` continue until shutdown."""
         outcome = FinishTask(True, "served")
         if self._mission is not None:
-            self._topics.publish(self._errand_for(self._mission))
+            self._topics.publish(self._resume(self._mission))
         obstacle = self._wait_until_ready()
         if obstacle:
             return FinishTask(False, obstacle)
         if self._mission is not None:
-            outcome = self._carry_out(self._reload_mission(self._mission))
+            mission = self._reload_mission(self._mission)
+            outcome = self._carry_out(mission, self._resume(mission), self._checkpoint)
         if self._settings.serve:
-            DeliverServer(self._topics, self._parse_goal, self._carry_out).serve(
+            DeliverServer(self._topics, self._parse_goal, self._carry_out_goal).serve(
                 lambda: self._step.pause(POLL_SECONDS)
             )
         return outcome
@@ -97,20 +98,28 @@ class PickObjectsNode:
         self._mission = self._read_mission() or mission
         return self._mission
 
+    def _carry_out_goal(self, mission: Mission, watch: Callable[[Errand], None]) -> FinishTask:
+        """Carry out the mission of a goal, which has no checkpoint: it ends with its node."""
+        return self._carry_out(mission, Errand(mission), watch=watch)
+
     def _carry_out(
-        self, mission: Mission, watch: Callable[[Errand], None] = lambda errand: None
+        self,
+        mission: Mission,
+        errand: Errand,
+        checkpoint: Optional[ParameterCheckpoint] = None,
+        watch: Callable[[Errand], None] = lambda errand: None,
     ) -> FinishTask:
         obstacle = self._unreachable_place(mission)
         if obstacle:
             return FinishTask(False, obstacle)
-        self._errand = self._errand_for(mission)
+        self._errand = errand
         event: Optional[Event] = None
         while not rospy.is_shutdown():
             with self._lock:
                 order = self._errand.advance(rospy.get_time(), event)
                 self._topics.publish(self._errand)
-                if self._checkpoint is not None:
-                    self._checkpoint.save(checkpoint_of(self._errand))
+                if checkpoint is not None:
+                    checkpoint.save(checkpoint_of(self._errand))
                 if isinstance(order, FinishTask):
                     self._navigation.move_base.cancel_all()
                     return order
@@ -124,11 +133,14 @@ class PickObjectsNode:
                 event = self._navigation.event()
         return FinishTask(False, "interrupted")
 
-    def _errand_for(self, mission: Mission) -> Errand:
-        """Resume the errand from a checkpoint, if there is one."""
-        found = None if self._checkpoint is None else self._checkpoint.latest
-        errand = None if found is None else resume_errand(mission, found)
-        return errand or Errand(mission)
+    def _resume(self, mission: Mission) -> Errand:
+        """Return the errand of the node's mission as a crashed process left it, or a new one.
+
+        The checkpoint stays after the mission's end, until the node's: a respawned node does not repeat it.
+        """
+        if self._checkpoint is None:
+            return Errand(mission)
+        return self._checkpoint.recovered(lambda record: resume_errand(mission, record)) or Errand(mission)
 
     def _wait_until_ready(self) -> Optional[str]:
         settings = self._settings

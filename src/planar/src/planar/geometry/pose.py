@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from typing import Any, Mapping
 
 import numpy as np
 
@@ -63,6 +64,20 @@ class Pose2:
     def from_array(cls, xyt) -> "Pose2":
         """Make a pose of an ``[x, y, yaw]`` triple."""
         return cls(float(xyt[0]), float(xyt[1]), float(xyt[2]))
+
+    @classmethod
+    def from_dict(cls, values: Mapping[str, Any]) -> "Pose2":
+        """Return the pose of a mapping with the numbers ``x``, ``y`` and ``yaw``, as ``asdict`` makes it.
+
+        Raises:
+            OutOfRangeError: If one is missing, is no number or is out of range.
+        """
+        try:
+            pose = cls(*(float(values[name]) for name in ("x", "y", "yaw")))
+        except (LookupError, TypeError, ValueError, OverflowError) as error:
+            raise OutOfRangeError(f"no pose of x, y and yaw: {values!r:.100}") from error
+        check_pose(pose, "a robot")
+        return pose
 
     def is_finite(self) -> bool:
         """Return whether no coordinate is NaN or infinite."""

@@ -9,9 +9,9 @@ from functools import partial
 import rospy
 
 from planar import Pose2
-from planar_ros.node.checkpoint import FileCheckpoint
+from planar_ros.node.checkpoint import FileCheckpoint, SavedFile
 from slam_lite.ros.thread_safe_mapper import ThreadSafeMapper
-from slam_lite.state import StateFileError, save_state
+from slam_lite.state import save_state
 
 # Time between checkpoints by the stamps of scans [s], and the largest share of the time to spend on them.
 CHECKPOINT_SECONDS, MAX_TIME_SHARE = 2.0, 0.05
@@ -30,7 +30,7 @@ class StateCheckpointer:
         self._checkpoint = FileCheckpoint()
         self._is_due = threading.Event()
         self._stamp = -math.inf
-        self._recover()
+        self._checkpoint.recovered(self._recover)
         threading.Thread(target=self._save_when_due, daemon=True).start()
         rospy.on_shutdown(self._is_due.set)
 
@@ -44,14 +44,8 @@ class StateCheckpointer:
             self._stamp = stamp
             self._is_due.set()
 
-    def _recover(self) -> None:
-        found = self._checkpoint.latest
-        if found is None:
-            return
-        try:
-            self._mapper.recover(str(found.path), Pose2(**found.value))
-        except StateFileError as error:
-            rospy.logwarn("cannot recover the map from before the crash, starting a new one: %s", error)
+    def _recover(self, saved: SavedFile) -> None:
+        self._mapper.recover(str(saved.path), Pose2.from_dict(saved.value))
 
     def _save_when_due(self) -> None:
         while not rospy.is_shutdown():
