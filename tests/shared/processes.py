@@ -35,6 +35,7 @@ def node_pid(name):
     """Return the process id of a node; None if it does not answer."""
     try:
         uri = rosgraph.Master("/test").lookupNode(name)
-        return xmlrpc.client.ServerProxy(uri).getPid("/test")[2]
+        _code, _text, pid = xmlrpc.client.ServerProxy(uri).getPid("/test")  # type: ignore[misc]
+        return pid
     except (OSError, rosgraph.MasterError, xmlrpc.client.Error):
         return None

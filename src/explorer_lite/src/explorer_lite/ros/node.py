@@ -126,7 +126,8 @@ class Explore:
         autostart = self._autostart
         if autostart is not None and not autostart.is_goal(self._server.current_goal.get_goal_id().id):
             autostart = None
-        explorer = Explorer(settings, goal.return_to_start, autostart and autostart.start)
+        before = None if autostart is None else autostart.start
+        explorer = Explorer(settings, goal.return_to_start, before)
         start = rospy.get_time()
         rospy.loginfo("exploring")
         end = self._explore(explorer, autostart)

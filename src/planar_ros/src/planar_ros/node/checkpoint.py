@@ -40,7 +40,7 @@ class ParameterCheckpoint:
         self._left = self._saved = rospy.get_param(self._name, "")
         rospy.on_shutdown(self._delete)
 
-    def recovered(self, decode: Callable[[Any], T]) -> Optional[T]:
+    def recovered(self, decode: Callable[[Any], Optional[T]]) -> Optional[T]:
         """Return the state that an earlier process of this name left.
 
         Args:
@@ -110,7 +110,7 @@ class FileCheckpoint:
         self._path = None if left is None else left.path
         self._remove(but=self._path)
 
-    def recovered(self, decode: Callable[[SavedFile], T]) -> Optional[T]:
+    def recovered(self, decode: Callable[[SavedFile], Optional[T]]) -> Optional[T]:
         """Return the state that an earlier process of this name left; see ParameterCheckpoint."""
         return self._checkpoint.recovered(lambda value: decode(_saved_file(value)))
 
