@@ -80,7 +80,7 @@ class ReportTest(unittest.TestCase):
         )
         about_the_disk = [line for line in run.lines if FULL_DISK in line]
         # amcl logs it, too, if it writes a checkpoint meanwhile.
-        by_amcl = [line for line in about_the_disk if line.startswith("amcl: warning: nothing is kept")]
+        by_amcl = [line for line in about_the_disk if line.startswith("amcl: warning: no checkpoint")]
         self.assertLessEqual(len(by_amcl), 1, output)
         self.assertLessEqual(len(about_the_disk) - len(by_amcl), 2, output)
         self.assertNotIn("Traceback", output)

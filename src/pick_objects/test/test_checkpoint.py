@@ -119,6 +119,6 @@ JOB, WHERE = RECORD["jobs"][0], RECORD["object_locations"]["cup"]
         {**RECORD, "object_locations": {"cup": {**WHERE, "pose": {"x": 1e400, "y": 0.0, "yaw": 0.0}}}},
     ],
 )
-def test_a_checkpoint_of_another_shape_is_an_error_of_its_own(record):
+def test_a_checkpoint_of_another_shape_is_a_checkpoint_error(record):
     with pytest.raises(CheckpointError):
         resume_errand(MISSION, record)
