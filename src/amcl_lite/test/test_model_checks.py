@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from amcl_lite import LocalizerSettings
-from amcl_lite.check import KITS, MOTION_CHECKS, SENSOR_CHECKS
+from amcl_lite.check import CHECK_SUITES, MOTION_CHECKS, SENSOR_CHECKS
 from amcl_lite.config import MOTION_MODELS, SENSOR_MODELS
 from planar.plugin_check import run_checks
 
@@ -76,10 +76,10 @@ def test_a_motion_model_of_amcl_passes(model, check):
     ],
 )
 def test_a_failed_check_is_reported(model, line, capsys):
-    assert run_checks("amcl_lite", KITS, [f"own.faulty/{model}"]) == 1
+    assert run_checks("amcl_lite", CHECK_SUITES, [f"own.faulty/{model}"]) == 1
     assert line in capsys.readouterr().out
 
 
 def test_what_is_neither_model_is_refused_with_what_it_lacks(capsys):
-    assert run_checks("amcl_lite", KITS, ["own.faulty/Indefinite"]) == 2
+    assert run_checks("amcl_lite", CHECK_SUITES, ["own.faulty/Indefinite"]) == 2
     assert "no Indefinite in" in capsys.readouterr().err

@@ -7,7 +7,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from laboratory.check import CHECKS, KITS
+from laboratory.check import CHECK_SUITES, CHECKS
 from laboratory.generators.crossings import CrossingCylinders
 from laboratory.generators.fields import CylinderFields
 from laboratory.generators.homes import Homes
@@ -68,10 +68,10 @@ def test_the_included_generators_pass(source, check):
     ],
 )
 def test_a_violated_contract_is_reported(generator, message, capsys):
-    assert run_checks("laboratory", KITS, [f"custom.faulty/{generator}"]) == 1
+    assert run_checks("laboratory", CHECK_SUITES, [f"custom.faulty/{generator}"]) == 1
     assert message in capsys.readouterr().out
 
 
 def test_a_generator_whose_fields_have_no_defaults_cannot_be_checked(capsys):
-    assert run_checks("laboratory", KITS, ["custom.faulty/Needs"]) == 2
+    assert run_checks("laboratory", CHECK_SUITES, ["custom.faulty/Needs"]) == 2
     assert "custom.faulty/Needs cannot be checked without arguments: " in capsys.readouterr().err

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from move_base_lite import costmap
-from move_base_lite.check import KITS
+from move_base_lite.check import CHECK_SUITES
 from move_base_lite.costmap import (
     LAYERS,
     LETHAL,
@@ -22,7 +22,7 @@ from planar import Pose2
 from planar.config.parameters import parameter
 
 
-@pytest.mark.parametrize("check", KITS["costmap_layer"].checks, ids=lambda check: check.__name__)
+@pytest.mark.parametrize("check", CHECK_SUITES["costmap_layer"].checks, ids=lambda check: check.__name__)
 @pytest.mark.parametrize("member", LAYERS.members, ids=lambda member: member.short_name)
 def test_a_layer_keeps_its_contract(member, check):
     check(member)

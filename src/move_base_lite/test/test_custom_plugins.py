@@ -5,7 +5,7 @@ import yaml
 from robot_in_picture import PRESET, Robot, drive_to_end, two_rooms
 
 from move_base_lite import Navigator, Status, settings_from_parameters
-from move_base_lite.check import KITS
+from move_base_lite.check import CHECK_SUITES
 from planar import Pose2, SettingsError
 from planar.plugin_check import run_checks
 
@@ -125,12 +125,12 @@ def test_a_failing_layer_aborts_the_goal_and_stops_the_robot():
 
 
 def test_the_check_reports_what_a_plugin_fails(capsys):
-    assert run_checks("move_base_lite", KITS, ["custom_plugins.faulty/ExceedsLimits"]) == 1
+    assert run_checks("move_base_lite", CHECK_SUITES, ["custom_plugins.faulty/ExceedsLimits"]) == 1
     printed = capsys.readouterr().out
     assert "FAIL  It reaches the goal and stops there without a collision" in printed
     assert "custom_plugins.faulty/ExceedsLimits: 0 of 6 checks passed" in printed
 
 
 def test_the_check_refuses_a_class_that_is_no_plugin(capsys):
-    assert run_checks("move_base_lite", KITS, ["custom_plugins.faulty/NoFollow"]) == 2
+    assert run_checks("move_base_lite", CHECK_SUITES, ["custom_plugins.faulty/NoFollow"]) == 2
     assert "is no local planner: it has no follow(context, plan, limits)" in capsys.readouterr().err

@@ -15,7 +15,7 @@ from move_base_lite import (
     Trajectory,
     settings_from_parameters,
 )
-from move_base_lite.check import KITS, maps
+from move_base_lite.check import CHECK_SUITES, maps
 from move_base_lite.control import Plan
 from move_base_lite.dynamic_obstacles import NO_DYNAMIC_OBSTACLES, DynamicObstacleTracker, TrackerSettings
 from planar import Pose2, Twist2
@@ -86,7 +86,7 @@ def test_a_planner_with_the_old_argument_names_keeps_the_contract(monkeypatch):
     module = types.ModuleType("old.planners")
     module.OldPlanner = OldPlanner
     monkeypatch.setitem(sys.modules, "old.planners", module)
-    plugin = KITS["local_planner"].find("old.planners/OldPlanner")
+    plugin = CHECK_SUITES["local_planner"].find("old.planners/OldPlanner")
     context = maps.context_of(maps.check_map("open").costmap, Pose2())
     with pytest.warns(DeprecationWarning):
         trajectory = plugin.make(plugin.settings(), 0.1).follow(

@@ -5,7 +5,7 @@ import pytest
 from scipy.ndimage import label
 
 from move_base_lite import GoalBlocked, NoPath, OutOfMap, StartBlocked
-from move_base_lite.check import KITS
+from move_base_lite.check import CHECK_SUITES
 from move_base_lite.costmap import INSCRIBED, LETHAL, UNKNOWN, CostmapWindow
 from move_base_lite.planning import GLOBAL_PLANNERS, Navfn, NavfnSettings, path_cost
 from move_base_lite.planning.wavefront import (
@@ -92,7 +92,7 @@ def assert_is_free(path_xy, costs, window):
         assert costs[window.cell_of(*point)] < INSCRIBED
 
 
-@pytest.mark.parametrize("check", KITS["global_planner"].checks, ids=lambda check: check.__name__)
+@pytest.mark.parametrize("check", CHECK_SUITES["global_planner"].checks, ids=lambda check: check.__name__)
 @pytest.mark.parametrize("member", GLOBAL_PLANNERS.members, ids=lambda member: member.short_name)
 def test_a_global_planner_keeps_its_contract(member, check):
     check(member)

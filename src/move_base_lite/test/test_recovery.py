@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from move_base_lite.check import KITS
+from move_base_lite.check import CHECK_SUITES
 from move_base_lite.costmap import LETHAL, observation_from_points
 from move_base_lite.costmap.costmap import LayeredCostmap
 from move_base_lite.costmap.layers.obstacles import ObstacleSettings, SourceSettings
@@ -64,7 +64,7 @@ class RecoveryBench:
         return tuple(costmap.costs[costmap.window.cell_of(*xy)] == LETHAL for costmap in self.costmaps)
 
 
-@pytest.mark.parametrize("check", KITS["recovery_behavior"].checks, ids=lambda check: check.__name__)
+@pytest.mark.parametrize("check", CHECK_SUITES["recovery_behavior"].checks, ids=lambda check: check.__name__)
 @pytest.mark.parametrize("member", RECOVERIES.members, ids=lambda member: member.short_name)
 def test_a_behaviour_fulfils_the_contract(member, check):
     check(member)

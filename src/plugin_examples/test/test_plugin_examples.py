@@ -2,11 +2,11 @@
 
 import pytest
 
-from amcl_lite.check import KITS as LOCALIZATION
-from move_base_lite.check import KITS as NAVIGATION
-from slam_lite.check import KITS as MAPPING
+from amcl_lite.check import CHECK_SUITES as LOCALIZATION
+from move_base_lite.check import CHECK_SUITES as NAVIGATION
+from slam_lite.check import CHECK_SUITES as MAPPING
 
-KITS = {**NAVIGATION, **LOCALIZATION, **MAPPING}
+CHECK_SUITES = {**NAVIGATION, **LOCALIZATION, **MAPPING}
 EXAMPLES = [
     ("local_planner", "plugin_examples.pure_pursuit/PurePursuit"),
     ("local_planner", "plugin_examples.potential_field/PotentialField"),
@@ -18,9 +18,9 @@ EXAMPLES = [
     ("scan_matcher", "plugin_examples.closest_points/ClosestPoints"),
 ]
 CASES = {
-    f"{name.rpartition('/')[2]}-{check.__name__}": (KITS[kind], name, check)
+    f"{name.rpartition('/')[2]}-{check.__name__}": (CHECK_SUITES[kind], name, check)
     for kind, name in EXAMPLES
-    for check in KITS[kind].checks
+    for check in CHECK_SUITES[kind].checks
 }
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from planar import Pose2
 from planar.plugin_check import run_checks
-from sim_bridge.check import CHECKS, KITS
+from sim_bridge.check import CHECK_SUITES, CHECKS
 from sim_bridge.faults import KINDS
 from sim_bridge.faults.kind import FaultKind
 
@@ -70,5 +70,5 @@ def test_a_kind_of_the_project_passes(kind, check):
     ],
 )
 def test_a_failed_check_is_reported(kind, report, capsys):
-    assert run_checks("sim_bridge", KITS, [f"custom.faulty/{kind}"]) == 1
+    assert run_checks("sim_bridge", CHECK_SUITES, [f"custom.faulty/{kind}"]) == 1
     assert report in capsys.readouterr().out

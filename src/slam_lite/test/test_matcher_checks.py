@@ -8,7 +8,7 @@ import pytest
 
 from planar import Pose2
 from planar.plugin_check import run_checks
-from slam_lite.check import CHECKS, KITS
+from slam_lite.check import CHECK_SUITES, CHECKS
 from slam_lite.config import MapperSettings
 from slam_lite.matching.local_map import Match
 from slam_lite.matching.scan_matcher import CorrelativeMatcher
@@ -58,5 +58,5 @@ def test_the_default_matcher_passes(check):
     ],
 )
 def test_a_faulty_matcher_fails_the_check(matcher, output, capsys):
-    assert run_checks("slam_lite", KITS, [f"custom.faulty/{matcher}"]) == 1
+    assert run_checks("slam_lite", CHECK_SUITES, [f"custom.faulty/{matcher}"]) == 1
     assert output in capsys.readouterr().out

@@ -107,7 +107,7 @@ def _log_likelihoods(settings: LocalizerSettings, poses: np.ndarray, beams: Beam
 
 SENSOR_CHECKS = (gives_finite_log_likelihoods, prefers_true_pose, is_deterministic, leaves_inputs_unchanged)
 MOTION_CHECKS = (follows_odometry, uses_only_given_rng)
-KITS = {
+CHECK_SUITES = {
     "sensor_model": CheckSuite(
         plugin_finder(SENSOR, lambda name: LocalizerSettings(sensor_plugin=name)), SENSOR_CHECKS
     ),
@@ -118,4 +118,4 @@ KITS = {
 
 
 if __name__ == "__main__":
-    sys.exit(run_checks("amcl_lite", KITS))
+    sys.exit(run_checks("amcl_lite", CHECK_SUITES))

@@ -27,6 +27,7 @@ from amcl_lite.sensor.beams import Beams, all_beams, evenly_spaced_beams
 from amcl_lite.sensor.scan_likelihood import ScanLikelihood
 from amcl_lite.sensor.scan_matching import match_scan
 from planar import OccupancyGrid, Pose2, Scan, grid_from_picture
+from planar.deprecation import renamed_method
 from planar.geometry.limits import MAX_COORDINATE, is_within
 
 # Share of the particles of a lost robot that is drawn at poses where the scan fits the map.
@@ -195,6 +196,9 @@ class Localizer:
                 estimate = self._estimate(base_in_odom, scan)
         self._evaluate_fit(base_in_odom, beams, scan.stamp)
         return estimate
+
+    go_on = renamed_method("go_on", "restore")
+    scatter = renamed_method("scatter", "start_global_localization")
 
     def _configure(self, settings: LocalizerSettings) -> None:
         likelihood, motion = ScanLikelihood(self._grid, settings), motion_model_of(settings)

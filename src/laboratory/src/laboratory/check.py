@@ -69,8 +69,8 @@ def _load_source(name: str) -> CustomWorlds:
 
 
 CHECKS = (gives_a_world_for_each_seed, is_deterministic, places_are_free)
-KITS = {"world_generator": CheckSuite(plugin_finder(CONTRACT, _load_source), CHECKS)}
+CHECK_SUITES = {"world_generator": CheckSuite(plugin_finder(CONTRACT, _load_source), CHECKS)}
 
 
 if __name__ == "__main__":
-    sys.exit(run_checks("laboratory", KITS))
+    sys.exit(run_checks("laboratory", CHECK_SUITES))

@@ -61,13 +61,13 @@ def expect_error(kind: Type[Exception], text: str) -> Iterator[None]:
 
 
 def run_checks(
-    package: str, kits: Mapping[str, CheckSuite], arguments: Optional[Sequence[str]] = None
+    package: str, suites: Mapping[str, CheckSuite], arguments: Optional[Sequence[str]] = None
 ) -> int:
     """Run the checks of a plugin and print their results.
 
     Args:
         package: Name of the package, for the usage message.
-        kits: Suites by kind of plugin.
+        suites: Suites by kind of plugin.
         arguments: Command line; by default that of the process.
 
     Returns:
@@ -78,10 +78,10 @@ def run_checks(
         description=f"Check whether a plugin of {package} satisfies its contract.",
     )
     parser.add_argument("name", metavar="NAME", help="my_package.my_module/MyClass or an entry point")
-    parser.add_argument("--kind", choices=kits, help="kind of the plugin, if the name fits several")
+    parser.add_argument("--kind", choices=suites, help="kind of the plugin, if the name fits several")
     options = parser.parse_args(arguments)
     try:
-        subject, checks = _found(options.name, [kits[options.kind]] if options.kind else [*kits.values()])
+        subject, checks = _found(options.name, [suites[options.kind]] if options.kind else [*suites.values()])
     except PluginError as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
@@ -90,17 +90,17 @@ def run_checks(
     return 1 if failed else 0
 
 
-def _found(name: str, kits: List[CheckSuite]) -> Tuple[Any, Tuple[Check, ...]]:
+def _found(name: str, suites: List[CheckSuite]) -> Tuple[Any, Tuple[Check, ...]]:
     """Return the argument of the checks, and the checks. Raises PluginError with what the plugin lacks."""
     reasons = []
-    for kit in kits:
+    for suite in suites:
         try:
-            subject = kit.find(name)
+            subject = suite.find(name)
         except PluginError as error:
             reasons.append(str(error))
             continue
         if subject is not None:
-            return subject, kit.checks
+            return subject, suite.checks
     raise PluginError("\n       ".join(dict.fromkeys(reasons)) or f"no plugin named {name}")
 
 

@@ -81,8 +81,8 @@ def _check_name(name: str) -> str:
 
 
 CHECKS = (has_a_docstring, accepts_any_strength, does_not_change_arguments, is_repeatable)
-KITS = {"fault": CheckSuite(plugin_finder(CONTRACT, _check_name), CHECKS)}
+CHECK_SUITES = {"fault": CheckSuite(plugin_finder(CONTRACT, _check_name), CHECKS)}
 
 
 if __name__ == "__main__":
-    sys.exit(run_checks("sim_bridge", KITS))
+    sys.exit(run_checks("sim_bridge", CHECK_SUITES))

@@ -91,7 +91,7 @@ CHECKS = (
     accepts_scans_without_points,
     is_deterministic,
 )
-KITS = {
+CHECK_SUITES = {
     "scan_matcher": CheckSuite(
         plugin_finder(CONTRACT, lambda name: MapperSettings(matcher_plugin=name)), CHECKS
     )
@@ -99,4 +99,4 @@ KITS = {
 
 
 if __name__ == "__main__":
-    sys.exit(run_checks("slam_lite", KITS))
+    sys.exit(run_checks("slam_lite", CHECK_SUITES))

@@ -20,7 +20,7 @@ def _suite(registry: Registry[Any], *checks: Check) -> CheckSuite:
 
 
 # The checks by kind of plugin.
-KITS = {
+CHECK_SUITES = {
     "local_planner": _suite(LOCAL_PLANNERS, *local_planners.CHECKS),
     "global_planner": _suite(GLOBAL_PLANNERS, *global_planners.CHECKS),
     "recovery_behavior": _suite(RECOVERIES, *recoveries.CHECKS),

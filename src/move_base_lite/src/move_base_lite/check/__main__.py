@@ -2,8 +2,8 @@
 
 import sys
 
-from move_base_lite.check import KITS
+from move_base_lite.check import CHECK_SUITES
 from planar.plugin_check import run_checks
 
 if __name__ == "__main__":
-    sys.exit(run_checks("move_base_lite", KITS))
+    sys.exit(run_checks("move_base_lite", CHECK_SUITES))
