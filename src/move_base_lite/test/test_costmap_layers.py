@@ -68,7 +68,7 @@ def layer_written_before_the_rename(*bases):
 def test_a_layer_that_names_its_method_note_still_works(bases):
     with pytest.warns(DeprecationWarning, match="OldLayer.note is deprecated; name it add_observation"):
         kind = layer_written_before_the_rename(*bases)
-        assert LAYERS.contract.missing(kind) == []
+        assert LAYERS.contract.violations(kind) == []
     layer = kind(None, None)
     layer.add_observation(observation_from_points("cloud", 0.0, Pose2(), np.empty((0, 3))), Pose2())
     assert layer.topics == ["cloud"]
