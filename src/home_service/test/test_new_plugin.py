@@ -18,11 +18,18 @@ def test_a_generated_plugin_is_found_by_its_name_and_fulfils_its_contract(
     monkeypatch.syspath_prepend(str(tmp_path / f"my_{kind}/src"))
     assert f"my_{kind}.{kind}/My{kind.title().replace('_', '')}" in capsys.readouterr().out
     test = runpy.run_path(str(tmp_path / f"my_{kind}/test/test_my_{kind}.py"))
-    assert test["KIT"].checks
-    for check in test["KIT"].checks:
+    assert test["SUITE"].checks
+    for check in test["SUITE"].checks:
         test["test_it_keeps_its_contract"](check)
     del sys.modules[f"my_{kind}"]
     importlib.invalidate_caches()
+
+
+@pytest.mark.parametrize("package", ["amcl_lite", "laboratory", "move_base_lite", "sim_bridge", "slam_lite"])
+def test_tests_of_plugins_that_were_generated_before_find_their_checks(package):
+    checks = importlib.import_module(f"{package}.check")
+    with pytest.warns(DeprecationWarning, match="KITS is deprecated; use .*CHECK_SUITES"):
+        assert checks.KITS is checks.CHECK_SUITES
 
 
 def test_every_kind_of_plugin_has_a_template():

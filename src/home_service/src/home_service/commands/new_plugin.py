@@ -67,14 +67,14 @@ TEST = '''"""{title} keeps its contract."""
 
 import pytest
 
-from {user}.check import KITS
+from {user}.check import CHECK_SUITES
 
-KIT = KITS["{kind}"]
+SUITE = CHECK_SUITES["{kind}"]
 
 
-@pytest.mark.parametrize("check", KIT.checks, ids=lambda check: check.__name__)
+@pytest.mark.parametrize("check", SUITE.checks, ids=lambda check: check.__name__)
 def test_it_keeps_its_contract(check):
-    check(KIT.find("{plugin}"))
+    check(SUITE.find("{plugin}"))
 '''
 
 

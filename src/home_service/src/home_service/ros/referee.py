@@ -90,8 +90,7 @@ class Referee:
     def start(self) -> None:
         """Subscribe; this process is a node by then."""
         self._is_started = True
-        truth = "base_pose_ground_truth"
-        subscribe(truth, Odometry, self._on_truth)
+        subscribe("base_pose_ground_truth", Odometry, self._on_truth)
         subscribe("contacts", String, self._on_contact)
         subscribe("pick_objects/state", String, self._on_state)
         subscribe("deliver/goal", DeliverActionGoal, self._on_goal)
@@ -229,7 +228,7 @@ class Referee:
     def _is_past_grace_period(self) -> bool:
         now = (self.simulated_time, time.monotonic())
         return self._ended_at is not None and all(
-            time > end + GRACE_SECONDS for time, end in zip(now, self._ended_at)
+            t > end + GRACE_SECONDS for t, end in zip(now, self._ended_at)
         )
 
     def _truth_at(self, stamp: float) -> Optional[Pose2]:
@@ -262,13 +261,10 @@ class Referee:
             return
         node = message.name.lstrip("/")
         if message.level >= Log.WARN:
-            if self._is_new_warning(f"{node}: {NUMBER.sub('', message.msg)}"):
+            # Numbers aside, a warning is logged once; the report lists all of them.
+            gist = f"{node}: {NUMBER.sub('', message.msg)}"
+            if gist not in self._logged:
                 self._log(f"{node}: warning: {message.msg}")
+            self._logged.add(gist)
         elif message.name in LOGGED_NODES:
             self._log(f"{node}: {message.msg}")
-
-    def _is_new_warning(self, gist):
-        """Whether a warning was not logged before, numbers aside; the report lists all of them."""
-        is_new = gist not in self._logged
-        self._logged.add(gist)
-        return is_new
