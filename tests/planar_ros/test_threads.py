@@ -27,7 +27,7 @@ class ThreadsTest(unittest.TestCase):
             self.assertEqual(run.returncode, 70, run.stdout)
             self.assertRegex(
                 run.stdout,
-                r"\[/node_with_failing_thread\] error: the thread .* has died of ValueError: no way on",
+                r"\[/node_with_failing_thread\] error: thread .* died of ValueError: no way on",
             )
             self.assertNotIn("/node_with_failing_thread", rosnode.get_node_names())
 
