@@ -14,7 +14,7 @@ import sys
 from functools import lru_cache
 from importlib.metadata import version
 from pathlib import Path
-from typing import Dict, Iterator, Optional, Set, Tuple
+from typing import Dict, Iterator, List, Optional, Set, Tuple
 
 from planar.files.writing import write_atomically
 
@@ -31,7 +31,9 @@ class SourceTree:
 
     def __init__(self, workspace: Path):
         self._roots = sorted(path for path in workspace.glob("src/**/src") if path.is_dir())
-        self._parsed = lru_cache(maxsize=None)(lambda path: ast.parse(path.read_bytes()))
+        # Most kernel modules import the same modules.
+        self._imports = lru_cache(maxsize=None)(imports)
+        self._path = lru_cache(maxsize=None)(self._locate)
 
     def kernel_modules(self) -> Iterator[Path]:
         """Yield the modules that use numba."""
@@ -51,14 +53,6 @@ class SourceTree:
                 ]
         return found
 
-    def _imports(self, path: Path) -> Iterator[Tuple[str, str]]:
-        """Yield (module, name) of each imported name; the name of a module import is empty."""
-        for node in ast.walk(self._parsed(path)):
-            if isinstance(node, ast.ImportFrom) and node.module and not node.level:
-                yield from ((node.module, alias.name) for alias in node.names)
-            elif isinstance(node, ast.Import):
-                yield from ((alias.name, "") for alias in node.names)
-
     def _find(self, module: str, name: str) -> Optional[Path]:
         """Return the file that defines a name, followed through the packages that re-export it."""
         path = self._path(f"{module}.{name}" if name else module) or self._path(module)
@@ -69,13 +63,24 @@ class SourceTree:
                 return self._find(source, name)
         return path
 
-    def _path(self, module: str) -> Optional[Path]:
+    def _locate(self, module: str) -> Optional[Path]:
         parts = module.split(".")
         for root in self._roots:
             for path in (root.joinpath(*parts).with_suffix(".py"), root.joinpath(*parts, "__init__.py")):
                 if path.is_file():
                     return path
         return None
+
+
+def imports(path: Path) -> List[Tuple[str, str]]:
+    """List (module, name) of each name that a file imports; the name of a module import is empty."""
+    found: List[Tuple[str, str]] = []
+    for node in ast.walk(ast.parse(path.read_bytes())):
+        if isinstance(node, ast.ImportFrom) and node.module and not node.level:
+            found += ((node.module, alias.name) for alias in node.names)
+        elif isinstance(node, ast.Import):
+            found += ((alias.name, "") for alias in node.names)
+    return found
 
 
 def kernel_digests(workspace: Path) -> Dict[str, str]:
