@@ -11,6 +11,7 @@ import re
 import subprocess
 import sys
 from collections import defaultdict
+from functools import lru_cache
 from pathlib import Path
 from typing import Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
@@ -102,14 +103,18 @@ def source_modules(root: Path) -> List[Path]:
     return sorted(path for path in root.glob("src/**/*.py") if "test" not in path.relative_to(root).parts)
 
 
-def definitions(root: Path) -> Iterator[Tuple[str, int, str, str]]:
-    """Yield (path, line, kind, name) of each class and function in the packages."""
+@lru_cache(maxsize=None)
+def definitions(root: Path) -> List[Tuple[str, int, str, str]]:
+    """List (path, line, kind, name) of each class and function in the packages."""
+    found = []
     for path in source_modules(root):
+        name = str(path.relative_to(root))
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.ClassDef):
-                yield str(path.relative_to(root)), node.lineno, "class", node.name
+                found.append((name, node.lineno, "class", node.name))
             elif isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
-                yield str(path.relative_to(root)), node.lineno, "function", node.name
+                found.append((name, node.lineno, "function", node.name))
+    return found
 
 
 def retired_definitions(root: Path, rules: dict) -> List[str]:
