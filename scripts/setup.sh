@@ -30,8 +30,8 @@ readonly logs=$root/logs/setup
 readonly development=(dev cockpit laboratory gymnasium fuzzing) # the extras that all tests need
 packages_only=
 failure=
-outdated= # what is kept although the sources have changed
-retry= # also what has failed before, of the same sources
+outdated= # parts that stay in use although their sources have changed
+retry= # also build sources that have failed before
 
 set_up() { # EXTRA...: brings the workspace up to date; extras: dev, projects, opencv, rviz, cockpit, laboratory, gymnasium, fuzzing
     look_for_missing "$@"
@@ -46,7 +46,7 @@ set_up() { # EXTRA...: brings the workspace up to date; extras: dev, projects, o
         [[ -z $packages ]] || install_debian
         [[ -z $build ]] || build_workspace
         finish_python
-        exec 9<&- # what is run now must not keep others from setting up
+        exec 9<&- # the program that starts now must not hold the lock of the set-up
     fi
     if [[ -n $failure ]]; then warn_of_failure; else take_in_all; fi
     [[ -z $outdated ]] ||
@@ -73,7 +73,7 @@ look_for_missing() { # EXTRA...: each of the variables is empty when nothing of 
     [[ -z $packages_only ]] || build='' kernels=''
 }
 
-keep_what_runs() { # what was started by something that runs here uses what that does
+keep_what_runs() { # a script started by a running program uses the build and packages of that program
     [[ -z $build ]] || outdated=build build=''
     ! replaces_packages || outdated=${outdated:+$outdated and }"Python packages" requirements=''
 }
@@ -88,7 +88,7 @@ announce() {
     [[ -z $kernels ]] || print_line "  compiled numerical kernels, into __pycache__ folders of src/"
 }
 
-start_python() { # what needs neither Debian's packages nor the build goes on beside them
+start_python() { # in the background: it needs neither Debian's packages nor the build
     [[ -z $requirements ]] || prepare_python
     [[ -z $requirements$kernels ]] || start_aside "$logs/python.log" install_python
 }

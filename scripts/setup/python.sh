@@ -1,12 +1,12 @@
 # shellcheck shell=bash disable=SC2154,SC2034 # variables of lib.sh and setup.sh
-# The Python packages in .venv: fetched beside Debian's, each as a wheel, then installed without network.
-# What an extra adds is installed into .venv, where it changes nothing else. Other versions of what is there are installed
-# into .venv.new, a copy that then takes the place of .venv.
+# The Python packages in .venv: fetched as wheels while Debian's are installed, then installed without network.
+# New packages are installed into .venv, where they change no other. Other versions of installed packages are installed
+# into .venv.new, a copy that then replaces .venv.
 
-venv=$root/.venv # what is installed into
-patience=60      # seconds until what runs has to end before packages change
+venv=$root/.venv # the environment that pip installs into
+patience=60      # seconds to wait for running programs to end before packages change
 
-missing_requirements() { # FILE...: those that .venv does not hold
+missing_requirements() { # FILE...: those that are not installed in .venv
     local file
     for file; do
         grep -qsxF "$(requirement_stamp "$file")" "$root/.venv/.set-up" || print_line "$file"
@@ -36,7 +36,7 @@ make_venv() {
         give_up "the virtual environment could not be created" "$logs/python.log"
 }
 
-is_venv_whole() { # VENV: made here, with this Python, and never left half installed
+is_venv_whole() { # VENV: created here, with this Python, and completely installed
     grep -qs " $(maker)\$" "$1/.set-up"
 }
 
@@ -46,12 +46,12 @@ create_venv() {
     /usr/bin/python3 -m venv --clear --system-site-packages "$venv" && maker >"$venv/.made"
 }
 
-copy_venv() { # pip replaces files and never writes into one, so that links are enough
+copy_venv() { # hard links: pip replaces files and never writes into one
     rm -rf "$venv"
     cp -al "$root/.venv" "$venv" 2>/dev/null || { rm -rf "$venv" && cp -a "$root/.venv" "$venv"; }
 }
 
-use_venv() { # the copy in place of .venv; programs in it name the folder that they are in
+use_venv() { # replace .venv by the copy; programs in it contain its path
     [[ $venv != "$root/.venv" ]] || return 0
     { grep -lIrF "$venv" "$venv/bin" "$venv/pyvenv.cfg" || true; } | xargs -r sed -i "s|$venv|$root/.venv|g"
     exchange "$root/.venv" "$venv"
@@ -59,13 +59,13 @@ use_venv() { # the copy in place of .venv; programs in it name the folder that t
     venv=$root/.venv
 }
 
-restore_venv() { # after a set-up that was cut short while it exchanged them, or one of version 1.0.0
+restore_venv() { # after a set-up that was interrupted during the exchange, or one of version 1.0.0
     local here=$root/.venv
     [[ -e $here || ! -e $here.old ]] || mv -T "$here.old" "$here"
     [[ -e $here/.set-up || ! -e $here/.set-up.before ]] || mv "$here/.set-up.before" "$here/.set-up"
 }
 
-replaces_packages() { # is anything missing that is there in another version?
+replaces_packages() { # is a missing requirement installed in another version?
     local file
     for file in $requirements; do ! grep -qs "  $file " "$root/.venv/.set-up" || return 0; done
     return 1
@@ -84,7 +84,7 @@ await_end() {
     done
 }
 
-is_in_use() { # whatever runs holds a lock on its build
+is_in_use() { # each running program holds a lock on its build
     local space
     for space in "$root"/build/[0-9]*/; do
         [[ ! -d $space ]] || flock --nonblock "$space" true || return 0
@@ -116,14 +116,14 @@ install_requirements() {
     use_venv
 }
 
-remove_half_installed() { # pip takes a package for whole before it is; the file INSTALLER comes after all others
+remove_half_installed() { # pip accepts a package that is installed in part; it writes the file INSTALLER last
     local package
     for package in "$venv"/lib/python3.*/site-packages/*.dist-info; do
         [[ ! -d $package || -e $package/INSTALLER ]] || rm -rf "$package"
     done
 }
 
-stamps_of_others() { # FILE: of requirements that are not set up now, which stay installed
+stamps_of_others() { # FILE: stamps of the other requirements, which stay installed
     local names
     names=$(IFS='|' && printf '%s' "${requirement_files[*]}")
     grep -svE "  ($names) " "$1" || true
@@ -131,7 +131,7 @@ stamps_of_others() { # FILE: of requirements that are not set up now, which stay
 
 rospy_of_system=/usr/lib/python3/dist-packages/rospy
 
-shield_rospy() { # that of Debian 11 calls Thread.isAlive, which its Python no longer has, when a second topic is subscribed to
+shield_rospy() { # Debian 11's calls Thread.isAlive, which its Python lacks, at the second subscription
     grep -qs 'isAlive()' "$rospy_of_system/core.py" || return 0
     local site
     site=$(echo "$root"/.venv/lib/python3.*/site-packages)
@@ -147,14 +147,14 @@ options_of_missing() {
 
 pip() { pip_of "$venv" "$@"; }
 
-pip_of() { # VENV COMMAND ARGUMENT...: what Debian has does not count, it comes and goes while apt-get is at work
+pip_of() { # VENV COMMAND ARGUMENT...: without Debian's Python packages, which change while apt-get runs
     env -u PYTHONHOME -u PYTHONPATH "$1/bin/python3" -c '
 import runpy, sys
 sys.path = [path for path in sys.path if not path.endswith("dist-packages")]
 runpy.run_module("pip", run_name="__main__")' "$2" --no-input --disable-pip-version-check --retries 3 "${@:3}"
 }
 
-# -- PyBullet, where its makers have no wheel: built once, for all workspaces of this user ---------------
+# -- PyBullet, if PyPI has no wheel for this machine: built once for all workspaces of this user ----------
 
 wheels=${XDG_CACHE_HOME:-${HOME:-/root}/.cache}/home-service-robot/wheels/$(getconf GNU_LIBC_VERSION | tr ' ' -)
 
@@ -166,13 +166,13 @@ missing_wheel() { # its name, if it is needed and neither PyPI nor the cache has
     has_whole_wheel "$wheels/pybullet-$(pybullet_version)-$tag-"*"$(uname -m).whl" || print_line "pybullet for $tag"
 }
 
-has_whole_wheel() { # FILE: its table of contents is at its end
+has_whole_wheel() { # FILE: a zip file has its table of contents at its end
     [[ -e $1 ]] && /usr/bin/python3 -m zipfile --list "$1" >/dev/null 2>&1
 }
 
 pybullet_version() { sed -n 's/^pybullet==//p' "$root/scripts/requirements.txt"; }
 
-build_wheel() ( # moved into the cache when it is whole
+build_wheel() ( # moved into the cache when it is complete
     work=
     trap '[[ -z $work ]] || rm -rf "$work"' EXIT
     mkdir -p "$wheels" && work=$(mktemp -d "$wheels/.building.XXXXXX") || exit

@@ -1,8 +1,8 @@
 # shellcheck shell=bash disable=SC2154,SC2034 # variables of lib.sh and setup.sh
-# The catkin build. Each is made in another folder, build/1, build/2 ..., and the link devel leads to the last good one.
-# So a build that fails or is cut short changes nothing, and what runs keeps the build that it was started with.
+# The catkin build. Each has its folder, build/1, build/2 ...; the link devel points to the last good one.
+# A build that fails or is interrupted changes nothing, and running programs keep the build they were started with.
 
-build_inputs() { # two lines: which packages there are, and what the build reads
+build_inputs() { # two lines: digests of the list of packages and of the files that the build reads
     cd "$root" || return
     find -L src -name package.xml | sort | cat - <(print_line "$root" "$(readlink /usr/bin/python3)") <(ignored_packages) | sha256sum
     find -L src -mindepth 2 -type f \( -name package.xml -o -name CMakeLists.txt -o -name setup.py -o -path '*/nodes/*' \
@@ -13,7 +13,7 @@ build_inputs() { # two lines: which packages there are, and what the build reads
 
 build_workspace() {
     local log=$logs/build.log space
-    inputs=$(build_inputs) # what has just been installed is among them
+    inputs=$(build_inputs) # again: the packages that were just installed count
     (cd "$root" && check_names)
     : >"$log"
     choose_space
@@ -31,24 +31,24 @@ build_workspace() {
     exec 8<&-
 }
 
-report_failure() { # LOG: in $failure; one that the sources are at fault for is kept, so that they are not built again
+report_failure() { # LOG: sets failure; a failure caused by the sources is recorded, so that they are not built again
     failure=$(reason_in "$1")
     if [[ -z $failure ]]; then
-        # What is made beside the part that fails goes on for a while.
+        # Parallel jobs continue for a while after the one that fails.
         sed '/^make\[.*\*\*\* \[/q' "$1" | tail -n 20 | sed 's/^/  | /' >&2
         failure="$(fault_in "$1") (see $1)"
         printf '%s\n' "$inputs" "$failure" >"$root/build/.failed"
     fi
 }
 
-last_failure() { # the sentence, if just these sources have failed to build while an earlier build is in use
+last_failure() { # its message, if these sources have failed to build while an earlier build is in use
     [[ -e $root/devel/.set-up && -e $root/build/.failed ]] || return 0
     [[ $(head -n 2 "$root/build/.failed") != "$inputs" ]] || tail -n +3 "$root/build/.failed"
 }
 
 # -- the folders of builds -----------------------------------------------------------------------------
 
-clear_projects() { # of other people, built on top of the last build; one that runs at this moment holds the lock in its folder
+clear_projects() { # projects of users, built on top of the last build; a running one holds the lock in its folder
     local folder
     for folder in "$root"/build/projects/*/; do
         [[ ! -d $folder ]] || flock --nonblock "$folder/lock" rm -rf "$folder" ||
@@ -56,10 +56,10 @@ clear_projects() { # of other people, built on top of the last build; one that r
     done
 }
 
-choose_space() { # sets space: the first folder that nothing runs from; it is locked while it is built in
+choose_space() { # sets space: the first folder that no program uses; locked during the build
     local number=1
     until space=$root/build/$number && is_free "$space"; do ((number += 1)); done
-    # A build that was made elsewhere, contains removed packages or was cut short is made again.
+    # A build that was made elsewhere, contains removed packages or was interrupted is made again.
     if [[ $(head -n 1 "$space/devel/.set-up" 2>/dev/null) == "${inputs%%$'\n'*}" ]]; then
         rm "$space/devel/.set-up"
     else
@@ -89,7 +89,7 @@ remove_build_in_place() { # of version 1.0.0, in build/ itself
     rm "$root/build/CMakeCache.txt"
 }
 
-leave_out_invalid() { # ROS's tools read each package in the source space, and end at the first that is not valid
+leave_out_invalid() { # ROS's tools read each package in the source space and stop at the first invalid one
     [[ -e $root/devel/.catkin ]] || return 0
     local valid
     valid=$(/usr/bin/python3 -c '
@@ -108,7 +108,7 @@ for path in sorted(find_package_paths(sys.argv[1])):
 print(";".join(valid))' "$root/src") && write_source_space "$valid"
 }
 
-take_in_all() { # once the package that was at fault has gone
+take_in_all() { # after the faulty package was removed or corrected
     [[ -e $root/build/.failed && -w $root/build ]] || return 0
     [[ ! -e $root/devel/.catkin ]] || write_source_space "$root/src"
     rm "$root/build/.failed"
@@ -121,7 +121,7 @@ write_source_space() { # FOLDERS, as catkin has it: separated by semicolons
 # -- catkin --------------------------------------------------------------------------------------------
 
 catkin_build() { # SPACE
-    # The workspace stands alone: another one that is sourced here must not become part of it.
+    # A sourced workspace must not become an underlay of this one.
     unset CMAKE_PREFIX_PATH LD_LIBRARY_PATH PKG_CONFIG_PATH PYTHONHOME PYTHONPATH "${!ROS_@}"
     if [[ -d $noetic ]]; then
         set +u
@@ -129,19 +129,19 @@ catkin_build() { # SPACE
         . "$noetic/setup.bash"
         set -u
     fi
-    # pip is at work in .venv meanwhile: a package that is there by half must not come before Debian's whole one.
+    # pip installs into .venv meanwhile: Debian's packages must precede those that are installed in part.
     export PYTHONPATH=${PYTHONPATH:+$PYTHONPATH:}/usr/lib/python3/dist-packages
     cd "$root" || return
     mark_ignored_packages
-    export ROS_LANG_DISABLE=genlisp:geneus:gennodejs # bindings of the messages that nobody asks for
-    # Without -j it would pass -l as well, and on a loaded machine make would wait for the load to sink.
-    # The Python of nodes goes by three names: catkin of Debian 13 knows the second one only, pluginlib the third.
-    # A message that is new in a folder is seen by cmake alone.
+    export ROS_LANG_DISABLE=genlisp:geneus:gennodejs # unused message bindings
+    # Without -j catkin_make would pass -l as well, and make would wait on a loaded machine.
+    # The Python of nodes is set by three variables: catkin of Debian 13 reads only the second, pluginlib the third.
+    # Only cmake detects a new message in a folder.
     catkin_make --force-cmake -j"$(nproc)" -D{PYTHON,Python,Python3}_EXECUTABLE="$root/.venv/bin/python3" \
         -DCATKIN_ENABLE_TESTING=OFF --build "$1/build" -DCATKIN_DEVEL_PREFIX="$1/devel"
 }
 
-mark_ignored_packages() { # programs may look for packages meanwhile: marks that stay are not touched
+mark_ignored_packages() { # running programs may search packages meanwhile: unchanged marks are not touched
     local ignored folder
     ignored=$(ignored_packages)
     for folder in src/compat/*/ src/tutorials/*/; do
@@ -150,7 +150,7 @@ mark_ignored_packages() { # programs may look for packages meanwhile: marks that
     [[ -z $ignored ]] || xargs -I{} touch {}/CATKIN_IGNORE <<<"$ignored"
 }
 
-# What is in these folders gives way to packages of the same name that the system or the user has.
+# Packages in these folders give way to packages of the same name of the system or the user.
 readonly giving_way='src/(compat|tutorials)/'
 
 ignored_packages() { # folders
