@@ -70,6 +70,10 @@ class SimulatedBoxes:
         self._latest = solids
         return self._bodies.placed
 
+    def room_beside(self, robot: Pose2, size: float) -> Pose2:
+        """Return a free pose next to the robot in the map, for an object of that width [m]."""
+        return self._bodies.room_beside(robot, size, robot)
+
     def _carry_out(self, order) -> None:
         """Spawn a moved box again; one without gravity stays in place until it is attached to the robot."""
         name = order.name if isinstance(order, RemoveBox) else order.solid.name
