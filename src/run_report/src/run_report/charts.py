@@ -10,7 +10,7 @@ from run_report.map_view import thinned
 from run_report.record import StateEvent
 
 HEIGHT = 100.0
-# States that end a mission have colours of their own; others take turns.
+# States that end a mission have fixed colours; others take turns.
 FINAL_STATES = ("delivered", "failed", "cancelled")
 TONES = 6
 
