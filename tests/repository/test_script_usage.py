@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from home_service import commands
-from home_service.cli import parse
 from laboratory.commands import FOLDER as EXPERIMENTS
+from supervision.cli import parse
 
 SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 FOLDERS = {"": commands.FOLDER, "experiments": EXPERIMENTS}
