@@ -8,8 +8,8 @@ from supervision.command_line import option
 class TestSlam(MappingOptions):
     """Start home and SLAM, driven by keyboard, in the browser or by the explorer; save the map.
 
-    With keys or the page the speed is 1 by default, and there is no time limit. Keys come from the terminal or
-    from a pipe: echo i:2.0 j:1.5 | ./scripts/test_slam.sh
+    With keys or the page the speed is 1 by default, and there is no time limit. Keys come from the terminal
+    or from a pipe: echo i:2.0 j:1.5 | ./scripts/test_slam.sh
 
     Exit code: 0 success, 1 failure or no result.json, 2 invalid input, 130 interrupted.
     """
