@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Write what follows from the code: src/*/config/*.yaml, scripts/usage, the generated parts of docs/.
+"""Write what follows from the code and from tables.
+
+These are src/*/config/*.yaml, scripts/usage, packages in src/compat and generated parts of pages in docs/.
 
 A page has two kinds of generated parts: the source behind a comment that names a module, and the table or
 text between ``<!-- generated: NAME -->`` and ``<!-- end -->``. With --check, only name the stale files.
@@ -18,6 +20,8 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [
     str(path) for path in (*ROOT.glob("src/*/src"), *ROOT.glob("src/compat/*/src"), ROOT / "tests/fuzz")
 ]
+
+from alias_packages import alias_packages  # noqa: E402
 
 from planar.config.config_file import Section, render_yaml  # noqa: E402
 from supervision.command_line import usage  # noqa: E402
@@ -40,10 +44,17 @@ def main() -> int:
         if options.check:
             print(f"{name} is stale: run docs/generate.py", file=sys.stderr)
         else:
-            path.parent.mkdir(exist_ok=True)
-            path.write_text(text, encoding="utf-8")
+            write(path, text)
             print(f"{name} written")
     return 1 if options.check and stale else 0
+
+
+def write(path: Path, text: str) -> None:
+    """Write a file; one that starts with ``#!`` becomes executable."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text, encoding="utf-8")
+    if text.startswith("#!"):
+        path.chmod(0o755)
 
 
 def is_written(path: Path, text: str) -> bool:
@@ -55,7 +66,9 @@ def files() -> Dict[Path, str]:
     """Return every generated or partly generated file with its text."""
     configs = {path: f"# {MADE_BY}\n{render_yaml(section)}" for path, section in declared_files().items()}
     pages = {path: with_generated(path.read_text("utf-8")) for path in ROOT.glob("docs/**/*.md")}
-    return {**configs, **usages(), **pages}
+    version = re.search("<version>(.*)</version>", (ROOT / "src/planar/package.xml").read_text("utf-8"))
+    aliases = alias_packages(ROOT / "src/compat", version[1])
+    return {**configs, **usages(), **aliases, **pages}
 
 
 def usages() -> Dict[Path, str]:
