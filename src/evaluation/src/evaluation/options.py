@@ -27,8 +27,8 @@ class WorldOptions:
     """World, robot and seed."""
 
     world: Path = option(ROOT / "map/home.world", "SDF world", type=Path)
-    robot: str = option("turtlebot_lidar", "robot profile of sim_bridge")
-    seed: int = option(0, "seed of every noise and every particle", type=seed)
+    robot: str = option("turtlebot_lidar", "robot profile of sim_bridge", metavar="NAME")
+    seed: int = option(0, "seed of all noise and particles", type=seed)
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class DrivingOptions(HomeOptions):
 
     planner: str = option(
         "",
-        "local planner: an official name or my_package.my_module/MyPlanner (default: the robot's preset)",
+        "local planner: official or my_package.my_module/MyPlanner (default: the robot's preset)",
         metavar="NAME",
     )
 
@@ -70,7 +70,7 @@ class DrivingOptions(HomeOptions):
 class ErrandOptions(HomeOptions):
     """A home with zones."""
 
-    zones: Path = option(ROOT / "map/zones.yaml", "YAML of zones", type=Path)
+    zones: Path = option(ROOT / "map/zones.yaml", "YAML of the zones", type=Path)
 
     def files(self) -> Dict[str, Any]:
         return {**super().files(), "zones_file": self.zones.resolve()}
@@ -80,7 +80,9 @@ class ErrandOptions(HomeOptions):
 class MissionOptions(ErrandOptions, DrivingOptions):
     """A home with a mission, or with the errand between the zones."""
 
-    mission: Optional[Path] = option(None, "YAML of deliveries", type=Path, metavar="FILE")
+    mission: Optional[Path] = option(
+        None, "run the deliveries of this file instead (docs/reference/missions.md)", type=Path
+    )
 
     def files(self) -> Dict[str, Any]:
         mission = {} if self.mission is None else {"mission_file": self.mission.resolve()}
@@ -121,16 +123,25 @@ class RunOptions:
         "1 real time, N times that, 0 as fast as the nodes keep up (default: 0, with --rviz or --web 1)",
         type=speed_factor,
     )
-    rviz: bool = option(False, "show the run in rviz, where there is a display")
-    web: bool = option(False, "show the run in the browser: prints the page's URL")
-    web_port: Optional[str] = option(None, "where that page is served", metavar="[ADDRESS:]PORT")
+    rviz: bool = option(False, "show it in rviz, if there is a display")
+    web: bool = option(
+        False,
+        "show it in the browser: prints the URL of the page (docs/how_to/watch_in_the_browser.md)",
+    )
+    web_port: Optional[str] = option(
+        None,
+        "address of that page (default: a free port of 127.0.0.1); implies --web",
+        metavar="[ADDRESS:]PORT",
+    )
     timeout: Optional[float] = option(
         None,
-        f"wall-clock seconds a run may take (default: {RUN_SECONDS:g}; none for what Ctrl-C ends)",
+        f"the run fails after N seconds of wall time (default: {RUN_SECONDS:g}; never for what Ctrl-C ends)",
         type=seconds,
     )
     gif: bool = option(False, "also leave run.gif, the run as an animation")
-    output: Path = option(Path("runs"), "where run folders are made", type=Path)
+    output: Path = option(
+        Path("runs"), "folder in which the run folder is created", type=Path, metavar="FOLDER"
+    )
 
     @property
     def name(self) -> str:
@@ -182,7 +193,9 @@ class GraphOptions(RunOptions, WorldOptions):
     """A run in the simulated world."""
 
     record: Optional[str] = option(
-        None, "record bags: scans, odometry and truth, or everything", choices=("inputs", "all")
+        None,
+        "record bags: scans, odometry and ground truth, or everything (docs/how_to/record_and_replay.md)",
+        choices=("inputs", "all"),
     )
 
     def launch(self, file: str, **arguments: object) -> LaunchPlan:
@@ -200,7 +213,7 @@ class MappingOptions(GraphOptions):
     """A run that saves a map."""
 
     save: Optional[Path] = option(
-        None, "write STEM.pgm and STEM.yaml, not to the run folder", type=Path, metavar="STEM"
+        None, "write STEM.pgm and STEM.yaml (default: map in the run folder)", type=Path, metavar="STEM"
     )
 
     def mapping(self, explores: bool) -> LaunchPlan:

@@ -5,7 +5,10 @@ from evaluation.options import MappingOptions
 
 @dataclass(frozen=True)
 class MapHome(MappingOptions):
-    """Let the robot explore the world, save its map, and score it against the true one."""
+    """Explore a world with SLAM, return, save the map, and score it against the true one.
+
+    Exit code: 0 success, 1 failure or no result.json, 2 invalid input, 130 interrupted.
+    """
 
     def run(self) -> int:
         from headless_mission.inputs import read_world

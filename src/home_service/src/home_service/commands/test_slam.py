@@ -6,9 +6,19 @@ from supervision.command_line import option
 
 @dataclass(frozen=True)
 class TestSlam(MappingOptions):
-    """Start home and SLAM, driven by keyboard, in the cockpit or by the explorer; save the map."""
+    """Start home and SLAM, driven by keyboard, in the browser or by the explorer; save the map.
 
-    drive: str = option("keys", "how the robot is driven", choices=("keys", "page", "auto"))
+    With keys or the page the speed is 1 by default, and there is no time limit. Keys come from the terminal
+    or from a pipe: echo i:2.0 j:1.5 | ./scripts/test_slam.sh
+
+    Exit code: 0 success, 1 failure or no result.json, 2 invalid input, 130 interrupted.
+    """
+
+    drive: str = option(
+        "keys",
+        "keys; page: in the browser, until Ctrl-C, implies --web; auto: the robot explores autonomously",
+        choices=("keys", "page", "auto"),
+    )
 
     @property
     def is_interactive(self) -> bool:
