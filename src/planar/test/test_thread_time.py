@@ -9,12 +9,24 @@ from pathlib import Path
 
 import pytest
 
-from move_base_lite import thread_time
-from move_base_lite.errors import PluginFailed
-from move_base_lite.plugin_guard import MAX_CALL_SECONDS, PluginGuard
-from move_base_lite.thread_time import MAX_AGE, Stopwatch
+from planar.extensions import MAX_CALL_SECONDS, CallRules, ExtensionPoint, PluginError, thread_time
+from planar.extensions.thread_time import MAX_AGE, Stopwatch
 
 SPINNING = "while True: pass"
+
+
+class Worker:
+    def work(self, seconds):
+        """Use so many seconds of processor time."""
+        end = time.thread_time() + seconds
+        while time.thread_time() < end:
+            pass
+
+    def sleep(self, seconds):
+        time.sleep(seconds)
+
+
+CONTRACT = ExtensionPoint("worker", Worker, "workers", CallRules(max_seconds=MAX_CALL_SECONDS))
 
 
 @pytest.fixture
@@ -30,29 +42,19 @@ def crowded():
     os.sched_setaffinity(0, before)
 
 
-def work(seconds):
-    """Use so many seconds of processor time."""
-    end = time.thread_time() + seconds
-    while time.thread_time() < end:
-        pass
-
-
 def test_a_plugin_that_waits_for_a_processor_does_not_fail(crowded):
-    guard = PluginGuard("busy/Planner", lambda: work, PluginFailed)
+    plugin = CONTRACT.guarded("busy/Worker", Worker)
     began = time.perf_counter()
     for seconds in (0.0, 0.5):
-        with guard.watch() as plugin:
-            plugin(seconds)
+        plugin.work(seconds)
     assert time.perf_counter() - began > MAX_CALL_SECONDS, "the thread had to wait"
 
 
 def test_a_plugin_that_sleeps_fails():
-    guard = PluginGuard("idle/Planner", lambda: time.sleep, PluginFailed)
-    with guard.watch() as plugin:
-        plugin(0.0)
-    message = r"idle/Planner took 1\.\d s for an answer"
-    with pytest.raises(PluginFailed, match=message), guard.watch() as plugin:
-        plugin(MAX_CALL_SECONDS + 0.1)
+    plugin = CONTRACT.guarded("idle/Worker", Worker)
+    plugin.sleep(0.0)
+    with pytest.raises(PluginError, match=r"idle/Worker took 1\.\d s for an answer"):
+        plugin.sleep(MAX_CALL_SECONDS + 0.1)
 
 
 def test_each_thread_is_measured_separately(crowded):
@@ -60,7 +62,7 @@ def test_each_thread_is_measured_separately(crowded):
 
     def measure():
         began, watch = time.perf_counter(), Stopwatch()
-        work(0.1)
+        Worker().work(0.1)
         waited.append((time.perf_counter() - began) - watch.seconds())
 
     threads = [threading.Thread(target=measure) for _ in range(2)]
@@ -73,13 +75,13 @@ def test_each_thread_is_measured_separately(crowded):
 
 def test_a_forked_process_is_measured_separately(crowded):
     """Its waiting time starts at zero, however long its parent has waited."""
-    work(0.3)
+    Worker().work(0.3)
     Stopwatch()
     reader, writer = os.pipe()
     child = os.fork()
     if child == 0:
         began, watch = time.perf_counter(), Stopwatch()
-        work(0.1)
+        Worker().work(0.1)
         os.write(writer, repr(watch.seconds() / (time.perf_counter() - began)).encode())
         os._exit(0)
     os.waitpid(child, 0)

@@ -1,7 +1,8 @@
 """Contract checks for plugins, run as ``python3 -m PACKAGE.check NAME``.
 
 A check is a function whose docstring states the requirement and that raises CheckFailed with what it found
-instead. The unit tests apply the same checks to the built-in classes.
+instead. It is given a plugin of one extension point, behind its guard: so each call also checks the answer,
+and that the arguments are not changed. The unit tests apply the same checks to the built-in classes.
 """
 
 import argparse
@@ -10,8 +11,11 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, Callable, Iterator, List, Mapping, Optional, Sequence, Tuple, Type
 
+import numpy as np
+
 from planar.errors import PlanarError
-from planar.plugins import PluginContract, PluginError, load_plugin
+from planar.extensions.loading import PluginError
+from planar.extensions.point import ExtensionPoint
 
 Check = Callable[[Any], None]
 
@@ -34,14 +38,44 @@ class CheckSuite:
     checks: Tuple[Check, ...]
 
 
-def plugin_finder(contract: PluginContract, made_of: Callable[[str], Any]) -> Callable[[str], Any]:
-    """Make the ``find`` of a CheckSuite for custom classes.
+def suite(contract: ExtensionPoint[Any], made_of: Callable[[str], Any], *checks: Check) -> CheckSuite:
+    """Return the suite of an extension point.
 
     Args:
-        contract: Contract of the kind of plugin.
+        contract: The extension point.
         made_of: Makes the argument of the checks from the plugin's name.
+        checks: Functions that raise CheckFailed.
     """
-    return lambda name: None if load_plugin(name, contract) is None else made_of(name)
+    return CheckSuite(lambda name: None if contract.load(name) is None else made_of(name), checks)
+
+
+def same_results(
+    run: Callable[[Any], Any], requirement: str = "The same calls give the same results."
+) -> Check:
+    """Return the check that two runs are equal.
+
+    Args:
+        run: Calls the plugin that it is given, and returns arrays or comparable values.
+        requirement: Docstring of the check.
+    """
+
+    def is_deterministic(plugin: Any) -> None:
+        first, second = run(plugin), run(plugin)
+        is_equal = np.array_equal(first, second) if isinstance(first, np.ndarray) else first == second
+        expect(bool(is_equal), "the second run gave other results")
+
+    is_deterministic.__doc__ = requirement
+    return is_deterministic
+
+
+@contextmanager
+def expect_unchanged(**given: np.ndarray) -> Iterator[None]:
+    """Check that the block does not write into arrays, named as in the message."""
+    before = {name: array.copy() for name, array in given.items()}
+    yield
+    for name, array in given.items():
+        is_equal = np.array_equal(array, before[name], equal_nan=array.dtype.kind == "f")
+        expect(is_equal, f"the call modified the {name.replace('_', ' ')}")
 
 
 def expect(condition: bool, text: str) -> None:
@@ -93,14 +127,14 @@ def run_checks(
 def _found(name: str, suites: List[CheckSuite]) -> Tuple[Any, Tuple[Check, ...]]:
     """Return the argument of the checks, and the checks. Raises PluginError with what the plugin lacks."""
     reasons = []
-    for suite in suites:
+    for each in suites:
         try:
-            subject = suite.find(name)
+            subject = each.find(name)
         except PluginError as error:
             reasons.append(str(error))
             continue
         if subject is not None:
-            return subject, suite.checks
+            return subject, each.checks
     raise PluginError("\n       ".join(dict.fromkeys(reasons)) or f"no plugin named {name}")
 
 
