@@ -125,4 +125,5 @@ CONTRACT: ExtensionPoint[GlobalPlanner] = ExtensionPoint(
         is_lazy=True,
     ),
     PlannerSettings,
+    parameter="base_global_planner",
 )

@@ -72,6 +72,8 @@ class Registry(Generic[T]):
 
     def __init__(self, point: ExtensionPoint[T], *members: Plugin[T]):
         self.point, self.members = point, members
+        if point.parameter:
+            _selected[point.package, point.parameter] = self
         self._loaded: Dict[str, Plugin[T]] = {}
 
     @property
@@ -118,6 +120,36 @@ class Registry(Generic[T]):
                 lambda *given: self.point.guarded(name, partial(found, *given)),
             )
         return self._loaded.get(name)
+
+
+_selected: Dict[Tuple[str, str], Registry[Any]] = {}
+
+
+def registries_of(package: str) -> Dict[str, Registry[Any]]:
+    """Return the registries from which a package selects a plugin, by the parameter that does."""
+    return {
+        parameter: _selected[owner, parameter] for owner, parameter in sorted(_selected) if owner == package
+    }
+
+
+class SelectedPlugins:
+    """The plugins that a component uses, constructed at their first use.
+
+    Args:
+        settings: Settings of the selected plugins by the parameter that selects them; for any other, the
+            first plugin of its registry is used.
+    """
+
+    def __init__(self, settings: Mapping[str, Any]):
+        self._settings = settings
+        self._made: Dict[str, Any] = {}
+
+    def __getitem__(self, registry: Registry[T]) -> T:
+        parameter = registry.point.parameter
+        if parameter not in self._made:
+            settings = self._settings.get(parameter) or registry.members[0].settings()
+            self._made[parameter] = registry.make(settings)
+        return self._made[parameter]
 
 
 def short_name(name: str) -> str:
