@@ -22,8 +22,7 @@ sys.path[:0] = [str(FOLDER), *(str(path) for path in sorted(ROOT.glob("src/**/sr
 from readers import READERS, Reader, prepare  # noqa: E402
 from trial import SECONDS  # noqa: E402
 
-from home_service.options import count, seconds  # noqa: E402
-from supervision.command_line import option, parse  # noqa: E402
+from supervision.command_line import count, option, parse, seconds  # noqa: E402  # noqa: E402
 from supervision.display import print_error  # noqa: E402
 
 # A reader that does not react to its time limit is killed after this time [s].

@@ -13,11 +13,11 @@ from move_base_lite.costmap.layers.obstacles import OBSTACLES, ObstacleSettings,
 from move_base_lite.costmap.layers.static import STATIC, StaticSettings
 from move_base_lite.planning import GLOBAL_PLANNERS, NavfnSettings, PlannerSettings
 from move_base_lite.planning.navfn import GLOBAL_PLANNER, NAVFN
-from move_base_lite.plugin import Plugin
 from move_base_lite.recovery import MoveSlowSettings, NamedRecovery, RotateSettings
 from move_base_lite.recovery.move_slow import MOVE_SLOW
 from planar.config.config_file import ConfigFiles, Section
 from planar.config.parameters import POSITIVE, Parameter, at_least, check_parameters, parameter
+from planar.extensions import Plugin
 
 
 @dataclass(frozen=True)

@@ -161,3 +161,35 @@ def words(options: Any) -> List[str]:
 def summary(kind: type) -> str:
     """Return the first line of a class's docstring."""
     return (kind.__doc__ or "").partition("\n")[0]
+
+
+def seconds(text: str) -> float:
+    """Convert an argument to a positive duration [s]."""
+    value = number(text)
+    if not value > 0.0:
+        raise argparse.ArgumentTypeError(f"{text} is not positive")
+    return value
+
+
+def seed(text: str) -> int:
+    """Convert an argument to a whole number from 0."""
+    return _whole_number(text, 0)
+
+
+def count(text: str) -> int:
+    """Convert an argument to a whole number from 1."""
+    return _whole_number(text, 1)
+
+
+def number(text: str) -> float:
+    """Convert an argument to a number."""
+    try:
+        return float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number") from None
+
+
+def _whole_number(text: str, least: int) -> int:
+    if not text.isascii() or not text.isdigit() or int(text) < least:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a whole number from {least}")
+    return int(text)

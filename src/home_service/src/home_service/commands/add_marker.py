@@ -1,7 +1,7 @@
 from dataclasses import dataclass
 
-from home_service.judging.verdict import DEMO
-from home_service.options import ErrandOptions, GraphOptions
+from evaluation.options import ErrandOptions, GraphOptions
+from evaluation.verdict import DEMO
 
 
 @dataclass(frozen=True)
@@ -12,8 +12,8 @@ class AddMarker(GraphOptions, ErrandOptions):
     """
 
     def run(self) -> int:
-        from home_service.inputs import read_errand
-        from home_service.ros.run_modes import run_to_completion
+        from evaluation.ros.run_modes import run_to_completion
+        from headless_mission.inputs import read_errand
 
         launch = self.launch("add_marker.launch", **self.files())
         return run_to_completion(self, launch, read_errand(self).places, {DEMO})

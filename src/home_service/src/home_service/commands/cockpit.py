@@ -2,7 +2,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Optional, Tuple
 
-from home_service.options import RunOptions
+from evaluation.options import RunOptions
 from supervision.command_line import argument, option
 
 
@@ -40,9 +40,9 @@ class Cockpit:
 
     def _show_recording(self) -> int:
         from cockpit.ros.node import check_tool
-        from home_service.recording_plan import recording_plan
+        from evaluation.recording_plan import recording_plan
+        from evaluation.ros.run_modes import run_until_interrupted
         from home_service.ros.replaying import open_recording
-        from home_service.ros.run_modes import run_until_interrupted
 
         check_tool(self.tool)
         recording = open_recording(self.recordings, needs_scans=False)

@@ -2,8 +2,7 @@ import json
 from dataclasses import dataclass
 from typing import Optional
 
-from home_service.options import seconds
-from supervision.command_line import option
+from supervision.command_line import option, seconds
 
 HEALTHY, UNHEALTHY, NOTHING_RUNS = 0, 1, 3
 

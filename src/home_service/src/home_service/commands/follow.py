@@ -1,6 +1,6 @@
 from dataclasses import dataclass
 
-from home_service.options import ErrandOptions, GraphOptions
+from evaluation.options import ErrandOptions, GraphOptions
 
 
 @dataclass(frozen=True)
@@ -13,7 +13,7 @@ class Follow(GraphOptions, ErrandOptions):
     """
 
     def run(self) -> int:
-        from home_service.inputs import read_errand
+        from headless_mission.inputs import read_errand
         from home_service.ros.following import run_follow
 
         launch = self.launch("follow.launch", **self.files())

@@ -2,8 +2,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Optional
 
-from home_service.judging.verdict import ERRAND, MARKERS, OBJECTS
-from home_service.options import GraphOptions, MissionOptions
+from evaluation.options import GraphOptions, MissionOptions
+from evaluation.verdict import ERRAND, MARKERS, OBJECTS
 from supervision.command_line import option
 
 # All nodes but the simulator are respawned, and resume from a checkpoint.
@@ -35,8 +35,8 @@ class HomeService(GraphOptions, MissionOptions):
         return self.serve
 
     def run(self) -> int:
-        from home_service.inputs import read_mission
-        from home_service.ros.run_modes import run_to_completion, run_until_interrupted
+        from evaluation.ros.run_modes import run_to_completion, run_until_interrupted
+        from headless_mission.inputs import read_mission
 
         places = read_mission(self).places
         launch = self.launch(

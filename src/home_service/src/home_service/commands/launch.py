@@ -2,7 +2,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Optional
 
-from home_service.options import GraphOptions
+from evaluation.options import GraphOptions
 from supervision.command_line import option
 
 
@@ -19,8 +19,8 @@ class Launch(GraphOptions):
     is_interactive = True
 
     def run(self) -> int:
-        from home_service.inputs import read_world
-        from home_service.ros.run_modes import run_until_interrupted
+        from evaluation.ros.run_modes import run_until_interrupted
+        from headless_mission.inputs import read_world
         from planar import load_map
 
         read_world(self)

@@ -1,6 +1,6 @@
 from dataclasses import dataclass
 
-from home_service.options import MappingOptions
+from evaluation.options import MappingOptions
 
 
 @dataclass(frozen=True)
@@ -11,7 +11,7 @@ class MapHome(MappingOptions):
     """
 
     def run(self) -> int:
-        from home_service.inputs import read_world
+        from headless_mission.inputs import read_world
         from home_service.ros.mapping import make_scored_map
 
         stage = read_world(self)

@@ -3,7 +3,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Dict
 
-from home_service.options import ROOT
+from evaluation.options import ROOT
 from supervision.command_line import argument, option
 
 TEMPLATES = ROOT / "src/home_service/templates"

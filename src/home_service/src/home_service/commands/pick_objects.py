@@ -1,7 +1,7 @@
 from dataclasses import dataclass
 
-from home_service.judging.verdict import ERRAND
-from home_service.options import GraphOptions, MissionOptions
+from evaluation.options import GraphOptions, MissionOptions
+from evaluation.verdict import ERRAND
 
 
 @dataclass(frozen=True)
@@ -12,8 +12,8 @@ class PickObjects(GraphOptions, MissionOptions):
     """
 
     def run(self) -> int:
-        from home_service.inputs import read_mission
-        from home_service.ros.run_modes import run_to_completion
+        from evaluation.ros.run_modes import run_to_completion
+        from headless_mission.inputs import read_mission
 
         launch = self.launch("pick_objects.launch", **self.files())
         return run_to_completion(self, launch, read_mission(self).places, {ERRAND})

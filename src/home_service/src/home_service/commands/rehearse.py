@@ -2,8 +2,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import List, Optional
 
-from home_service.options import MissionOptions, count, seconds
-from supervision.command_line import option
+from evaluation.options import MissionOptions
+from supervision.command_line import count, option, seconds
 
 
 @dataclass(frozen=True)
@@ -34,8 +34,8 @@ class Rehearse(MissionOptions):
 
     def _compare(self, table: Path) -> int:
         """Compare each kind of fault; return 1 after a false verdict or a needless failure."""
-        from home_service.headless.fault_comparison import FaultComparison, FaultComparisonRow, fault_report
-        from home_service.inputs import read_mission
+        from headless_mission.fault_comparison import FaultComparison, FaultComparisonRow, fault_report
+        from headless_mission.inputs import read_mission
         from planar import write_atomically
         from sim_bridge.faults import KINDS
 
@@ -51,8 +51,8 @@ class Rehearse(MissionOptions):
         return int(any(row.false_verdicts or row.fails_needlessly for row in rows))
 
     def _run_episodes(self) -> int:
-        from home_service.headless import EpisodeConditions, HeadlessMission, parcel_for
-        from home_service.inputs import read_mission
+        from headless_mission import EpisodeConditions, HeadlessMission, parcel_for
+        from headless_mission.inputs import read_mission
         from sim_bridge.faults import load_faults
 
         home, successes = read_mission(self), 0

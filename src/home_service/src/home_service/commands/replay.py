@@ -3,8 +3,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Optional, Sequence, Tuple
 
-from home_service.options import ROOT, LaunchPlan, RunOptions, seed
-from supervision.command_line import argument, option
+from evaluation.options import ROOT, LaunchPlan, RunOptions
+from supervision.command_line import argument, option, seed
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class Replay(RunOptions):
         return replay(self, launch, recording, saves_map=self.estimator == "slam", stem=self.save)
 
     def _launch(self, bags: Sequence[Path]) -> LaunchPlan:
-        from home_service.recording_plan import recording_plan
+        from evaluation.recording_plan import recording_plan
         from planar import load_map
 
         if self.estimator == "recorded":

@@ -2,7 +2,7 @@ import argparse
 from dataclasses import dataclass
 from typing import List, Optional, Sequence, Tuple
 
-from home_service.options import DrivingOptions, GraphOptions
+from evaluation.options import DrivingOptions, GraphOptions
 from supervision.command_line import option
 
 
@@ -42,9 +42,9 @@ class TestNavigation(GraphOptions, DrivingOptions):
         return self.goals is None
 
     def run(self) -> int:
-        from home_service.inputs import read_goals
+        from evaluation.ros.run_modes import run_until_interrupted
+        from headless_mission.inputs import read_goals
         from home_service.ros.goal_sequence import drive_to_goals
-        from home_service.ros.run_modes import run_until_interrupted
         from planar import Pose2
 
         goals = [Pose2(*goal) for goal in self.goals or ()]

@@ -1,6 +1,6 @@
 from dataclasses import dataclass
 
-from home_service.options import MappingOptions
+from evaluation.options import MappingOptions
 from supervision.command_line import option
 
 
@@ -33,7 +33,7 @@ class TestSlam(MappingOptions):
         return 1.0 if self.speed is None and self.is_interactive else super().effective_speed
 
     def run(self) -> int:
-        from home_service.inputs import read_world
+        from headless_mission.inputs import read_world
         from home_service.ros.mapping import drive_by_keyboard, drive_in_browser, explore, make_map
 
         read_world(self)

@@ -2,8 +2,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Optional
 
-from home_service.options import count, seed
-from supervision.command_line import argument, option
+from supervision.command_line import argument, count, option, seed
 
 
 @dataclass(frozen=True)

@@ -1,8 +1,7 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from home_service.options import count, seed
-from supervision.command_line import option
+from supervision.command_line import count, option, seed
 
 
 @dataclass(frozen=True)

@@ -3,8 +3,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Optional, Tuple
 
-from home_service.options import count
-from supervision.command_line import argument, option
+from supervision.command_line import argument, count, option
 
 
 @dataclass(frozen=True)

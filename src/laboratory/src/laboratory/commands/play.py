@@ -1,8 +1,8 @@
 from dataclasses import dataclass
 from typing import Any
 
-from home_service.options import RunOptions, seed
-from supervision.command_line import argument, option, words
+from evaluation.options import RunOptions
+from supervision.command_line import argument, option, seed, words
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class Play(RunOptions):
     )
 
     def run(self) -> int:
-        from home_service.preload import preload_nodes
+        from evaluation.preload import preload_nodes
         from laboratory.suites import load_scenario
 
         if self.over == "ros":

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Dict
 
 from laboratory.results.version import version_over_ros
 from planar import SettingsError
-from planar.plugins import source_files
+from planar.extensions import source_files
 
 if TYPE_CHECKING:
     from laboratory.scenario.scenario import Scenario

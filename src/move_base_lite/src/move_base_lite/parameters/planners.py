@@ -5,7 +5,7 @@ from typing import Any, Dict, TypeVar
 from move_base_lite.control import LOCAL_PLANNERS, ControllerSettings
 from move_base_lite.parameters.reader import ParameterReader, Tree, subtree
 from move_base_lite.planning import GLOBAL_PLANNERS, PlannerSettings
-from move_base_lite.plugin import Plugin, Registry
+from planar.extensions import Plugin, Registry
 
 T = TypeVar("T")
 GLOBAL_KEY, LOCAL_KEY = "base_global_planner", "base_local_planner"

@@ -9,8 +9,8 @@ from move_base_lite.costmap import CostmapSettings
 from move_base_lite.parameters.costmaps import INHERITED, layer_plugins, with_plugin_list
 from move_base_lite.parameters.planners import PLANNERS
 from move_base_lite.parameters.reader import ParameterReader, Tree, subtree
-from move_base_lite.plugin import Plugin
 from planar.config.parameters import DynamicParameter, dynamic_parameters_of
+from planar.extensions import Plugin
 
 COSTMAPS = ("global_costmap", "local_costmap")
 # Parameters that a namespace inherits from move_base's own.
