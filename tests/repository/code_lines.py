@@ -8,9 +8,8 @@ import argparse
 import ast
 import io
 import tokenize
-from collections import Counter
 from pathlib import Path
-from typing import Dict, List, Set
+from typing import Counter, Dict, Sequence, Set
 
 ROOT = Path(__file__).resolve().parents[2]
 KINDS = ("files", "lines", "code", "docstrings", "comments", "blank")
@@ -18,7 +17,7 @@ LAYOUT = {tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, toke
 DOCUMENTED = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
 
 
-def count(text: str) -> "Counter[str]":
+def count(text: str) -> Counter[str]:
     """Count the lines of a module by kind; a line with code and a comment is code."""
     lines = text.splitlines()
     docstrings = docstring_lines(ast.parse(text))
@@ -72,7 +71,7 @@ def table(root: Path, by_package: bool) -> str:
     )
 
 
-def _row(name: str, cells: "List[object]", width: int) -> str:
+def _row(name: str, cells: Sequence[object], width: int) -> str:
     return f"{name:<{width}}" + "".join(f"{cell:>12}" for cell in cells)
 
 
