@@ -7,7 +7,7 @@ from home_service.options import ROOT
 from supervision.command_line import argument, option
 
 TEMPLATES = ROOT / "src/home_service/templates"
-EXAMPLES = ROOT / "src/plugin_examples/src/plugin_examples"
+EXAMPLES = ROOT / "src/plugin_examples"
 PACKAGE_NAME = re.compile(r"[a-z][a-z0-9_]*")
 
 
@@ -57,18 +57,6 @@ PACKAGE_XML = """<?xml version="1.0"?>
   <buildtool_depend>python3-setuptools</buildtool_depend>
   {depends}
 </package>
-"""
-CMAKE_LISTS = """cmake_minimum_required(VERSION 3.0.2)
-project({package})
-
-find_package(catkin REQUIRED)
-catkin_python_setup()
-catkin_package()
-"""
-SETUP = """from catkin_pkg.python_setup import generate_distutils_setup
-from setuptools import find_packages, setup
-
-setup(**generate_distutils_setup(packages=find_packages("src"), package_dir={"": "src"}))
 """
 TEST = '''"""{title} keeps its contract."""
 
@@ -133,13 +121,19 @@ class NewPlugin:
             ),
         }
         module, _, named = kind.example.rpartition("/")
-        source = EXAMPLES / f"{module}.py" if module else TEMPLATES / f"{self.kind}.py"
+        source = (
+            EXAMPLES / "src/plugin_examples" / f"{module}.py" if module else TEMPLATES / f"{self.kind}.py"
+        )
         code = source.read_text(encoding="utf-8").replace(named or "CLASS", self._class)
         return {
             "package.xml": PACKAGE_XML.format(**words),
-            "CMakeLists.txt": CMAKE_LISTS.format(**words),
-            "setup.py": SETUP,
+            "CMakeLists.txt": _of_examples("CMakeLists.txt").replace("plugin_examples", self.name),
+            "setup.py": _of_examples("setup.py"),
             f"src/{self.name}/__init__.py": f'"""{title}."""\n',
             f"src/{self.name}/{self.kind}.py": code.replace("TITLE", title),
             f"test/test_{self.name}.py": TEST.format(**words),
         }
+
+
+def _of_examples(name: str) -> str:
+    return (EXAMPLES / name).read_text(encoding="utf-8")
