@@ -9,14 +9,14 @@ import numpy as np
 
 from amcl_lite.config import LocalizerSettings
 from amcl_lite.motion.custom_model import CONTRACT as MOTION
-from amcl_lite.motion.custom_model import motion_model_of
+from amcl_lite.motion.motion_model import motion_model_of
 from amcl_lite.sensor.beams import Beams, evenly_spaced_beams
 from amcl_lite.sensor.custom_model import CONTRACT as SENSOR
 from amcl_lite.sensor.scan_likelihood import ScanLikelihood
 from planar import OccupancyGrid, Pose2, Scan, grid_from_picture, wrap
 from planar.deprecation import deprecated_names
+from planar.extensions.check import expect, expect_unchanged, run_checks, same_results, suite
 from planar.geometry.ray_casting import cast_rays
-from planar.plugin_check import CheckSuite, expect, plugin_finder, run_checks
 
 ROOM = grid_from_picture("##########\n#........#\n#........#\n#....#...#\n#....#####\n##########", 0.5)
 GRID = OccupancyGrid(np.kron(ROOM.cells, np.ones((10, 10), np.int8)), 0.05)
@@ -45,21 +45,12 @@ def prefers_true_pose(settings: LocalizerSettings) -> None:
         )
 
 
-def is_deterministic(settings: LocalizerSettings) -> None:
-    """Equal calls return equal results."""
-    beams = _beams(_ranges(), settings)
-    first, second = (_log_likelihoods(settings, _poses_nearby(), beams) for _ in range(2))
-    expect(np.array_equal(first, second), "a different likelihood of the same scan")
-
-
 def leaves_inputs_unchanged(settings: LocalizerSettings) -> None:
     """It does not modify its inputs."""
-    beams, cells = _beams(_ranges(), settings), GRID.cells.copy()
-    before = beams.ranges.copy(), beams.directions.copy(), beams.ends_xy.copy()
-    _log_likelihoods(settings, _poses_nearby(), beams)
-    for array, as_it_was in zip((beams.ranges, beams.directions, beams.ends_xy), before):
-        expect(np.array_equal(array, as_it_was), "the call modified the beams")
-    expect(np.array_equal(GRID.cells, cells), "the call modified the map")
+    beams = _beams(_ranges(), settings)
+    given = {"ranges": beams.ranges, "directions": beams.directions, "ends": beams.ends_xy}
+    with expect_unchanged(map=GRID.cells, **given):
+        _log_likelihoods(settings, _poses_nearby(), beams)
 
 
 def follows_odometry(settings: LocalizerSettings) -> None:
@@ -76,17 +67,6 @@ def follows_odometry(settings: LocalizerSettings) -> None:
         )
         turned = abs(np.mean([wrap(each - expected.yaw) for each in now[:, 2].tolist()]))
         expect(turned <= MAX_HEADING_BIAS, f"{turned:.2f} rad off after a turn of {MOTION_STEP.yaw:g} rad")
-
-
-def uses_only_given_rng(settings: LocalizerSettings) -> None:
-    """All randomness comes from rng: equal seeds give equal results."""
-    first, second = (
-        motion_model_of(settings).moved(
-            _poses_nearby(), TRUE_POSE, TRUE_POSE @ MOTION_STEP, np.random.default_rng(3)
-        )
-        for _ in range(2)
-    )
-    expect(np.array_equal(first, second), "different poses with the same seed")
 
 
 def _ranges() -> np.ndarray:
@@ -106,15 +86,28 @@ def _log_likelihoods(settings: LocalizerSettings, poses: np.ndarray, beams: Beam
     return ScanLikelihood(GRID, settings).log_likelihoods(poses, beams, has_converged=False)
 
 
-SENSOR_CHECKS = (gives_finite_log_likelihoods, prefers_true_pose, is_deterministic, leaves_inputs_unchanged)
-MOTION_CHECKS = (follows_odometry, uses_only_given_rng)
+def _log_likelihoods_nearby(settings: LocalizerSettings) -> np.ndarray:
+    return _log_likelihoods(settings, _poses_nearby(), _beams(_ranges(), settings))
+
+
+def _moved(settings: LocalizerSettings) -> np.ndarray:
+    given = _poses_nearby(), TRUE_POSE, TRUE_POSE @ MOTION_STEP
+    return motion_model_of(settings).moved(*given, np.random.default_rng(3))
+
+
+SENSOR_CHECKS = (
+    gives_finite_log_likelihoods,
+    prefers_true_pose,
+    same_results(_log_likelihoods_nearby, "Equal calls return equal results."),
+    leaves_inputs_unchanged,
+)
+MOTION_CHECKS = (
+    follows_odometry,
+    same_results(_moved, "All randomness comes from rng: equal seeds give equal results."),
+)
 CHECK_SUITES = {
-    "sensor_model": CheckSuite(
-        plugin_finder(SENSOR, lambda name: LocalizerSettings(sensor_plugin=name)), SENSOR_CHECKS
-    ),
-    "motion_model": CheckSuite(
-        plugin_finder(MOTION, lambda name: LocalizerSettings(motion_plugin=name)), MOTION_CHECKS
-    ),
+    "sensor_model": suite(SENSOR, lambda name: LocalizerSettings(sensor_plugin=name), *SENSOR_CHECKS),
+    "motion_model": suite(MOTION, lambda name: LocalizerSettings(motion_plugin=name), *MOTION_CHECKS),
 }
 
 

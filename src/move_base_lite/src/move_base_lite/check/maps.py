@@ -12,9 +12,9 @@ from move_base_lite.costmap.layers.inflation import InflationSettings
 from move_base_lite.costmap.layers.static import StaticSettings
 from move_base_lite.dynamic_obstacles import NO_DYNAMIC_OBSTACLES
 from move_base_lite.planning import Navfn, NavfnSettings
-from move_base_lite.plugin import Plugin
 from planar import Pose2, Twist2, grid_from_picture
-from planar.plugin_check import CheckFailed
+from planar.extensions import Plugin
+from planar.extensions.check import CheckFailed
 
 PERIOD = 0.1
 RADIUS = 0.2

@@ -10,9 +10,9 @@ from move_base_lite.costmap.layers.inflation import INFLATION, InflationSettings
 from move_base_lite.costmap.layers.obstacles import OBSTACLES, VOXEL, ObstacleSettings, SourceSettings
 from move_base_lite.costmap.layers.static import STATIC, StaticSettings
 from move_base_lite.parameters.reader import ParameterReader, Tree, parameter_names, subtree
-from move_base_lite.plugin import Plugin
 from planar import SettingsError
 from planar.config.bounded_yaml import load_yaml
+from planar.extensions import Plugin
 
 # Parameters that costmaps inherit from move_base's namespace.
 INHERITED = ("footprint", "robot_radius", "footprint_padding")

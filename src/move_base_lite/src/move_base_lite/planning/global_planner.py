@@ -14,7 +14,9 @@ from typing import Any, Optional, Protocol, Tuple
 import numpy as np
 
 from move_base_lite.costmap import CostmapWindow
+from move_base_lite.errors import NavigationError, PlanningPluginFailed
 from planar.config.parameters import Interval, at_least, check_parameters, parameter
+from planar.extensions import MAX_CALL_SECONDS, CallRules, ExtensionPoint, InvalidAnswer
 
 ORIENTATIONS = (
     "of the poses: 0 none, 1 forward (GlobalPlanner's), 2 interpolated, 3 forward then interpolated, "
@@ -99,3 +101,29 @@ class GlobalPlanner(Protocol):
             NoPath: No path connects start and goal. The texts of all four state the position.
         """
         ...
+
+
+def _checked(path_xy: np.ndarray, *given: Any) -> np.ndarray:
+    """Refuse an answer that the robot cannot follow."""
+    path_xy = np.asarray(path_xy, float)
+    if not (path_xy.ndim == 2 and path_xy.shape[1:] == (2,) and len(path_xy) > 1):
+        raise InvalidAnswer(f"gave a path of the shape {path_xy.shape}, not (N, 2) with N > 1")
+    if not np.isfinite(path_xy).all():
+        raise InvalidAnswer("gave a path that is not finite")
+    return path_xy
+
+
+CONTRACT: ExtensionPoint[GlobalPlanner] = ExtensionPoint(
+    "global planner",
+    GlobalPlanner,
+    "move_base_lite.global_planners",
+    CallRules(
+        PlanningPluginFailed,
+        (NavigationError,),
+        {"plan": _checked},
+        max_seconds=MAX_CALL_SECONDS,
+        is_lazy=True,
+    ),
+    PlannerSettings,
+    parameter="base_global_planner",
+)

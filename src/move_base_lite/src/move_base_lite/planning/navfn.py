@@ -16,9 +16,9 @@ from move_base_lite.planning.global_planner import (
 from move_base_lite.planning.nearest import Cell, passable_ends
 from move_base_lite.planning.shortcuts import shorten
 from move_base_lite.planning.wavefront import propagate_wavefront, trace_path, traversal_costs
-from move_base_lite.plugin import Plugin
 from planar.config.parameters import DynamicParameter, Interval, at_least, parameter
 from planar.config.settings import check
+from planar.extensions import Plugin
 
 STEP_CELLS = 0.5
 # Maximum length of a shortcut [cells]: practically unlimited, or just smoothing of the gradient's steps.
