@@ -1,6 +1,7 @@
 """Imports respect the layers, and folders, classes and functions stay small."""
 
 import ast
+import re
 from pathlib import Path
 from typing import Iterator, Tuple
 
@@ -60,6 +61,12 @@ def test_packages_import_lower_layers_only():
         if LAYER_OF[other] >= LAYER_OF[package]
     ]
     assert upward == []
+
+
+def test_yaml_is_parsed_with_bounds():
+    unbounded = re.compile(r"yaml\.(safe_|full_|unsafe_)?load(_all)?\(|yaml\.compose\(")
+    modules = [path for path in structure.modules(ROOT) if unbounded.search(path.read_text(encoding="utf-8"))]
+    assert modules == [], "use planar.config.bounded_yaml.load_yaml"
 
 
 @pytest.mark.parametrize(
