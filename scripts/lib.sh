@@ -92,10 +92,14 @@ show_time() { # STARTED PARENT LOG: until the parent has ended, be it killed
     done
 }
 
-share_built() { # LOG: the last percentage that make has reported, as in "[ 14%] Building"; nothing without one
-    local share
-    share=$(tail -c 8192 "$1" | grep -oE '^\[ *[0-9]+%\]' | tail -n 1) || return 0
-    print_line ", ${share//[^0-9]/} %"
+share_built() { # LOG: of a build by catkin, first of the packages and then, as in "[ 14%] Building", of the targets
+    awk '/^-- ~~ +traversing [0-9]+ packages/ { packages = $4 }
+        /^-- \+\+\+ processing catkin package/ { configured++ }
+        /^\[ *[0-9]+%\]/ { share = substr($0, 2) + 0; is_building = 1 }
+        END {
+            if (is_building) print ", " share " %"
+            else if (packages) print ", " configured + 0 " of " packages " packages configured"
+        }' "$1"
 }
 
 start_aside() { # LOG COMMAND...: goes on beside the next steps, until finish_aside

@@ -350,13 +350,17 @@ def test_a_long_build_shows_its_time_and_how_much_is_built(tmp_path):
         tmp_path,
         """
         sleep() { command sleep 0.01; }  # of the clock
-        build() { echo "[ 14%] Building"; command sleep 2; echo "[100%] Built"; command sleep 2; }
+        build() {
+            printf -- '-- ~~  traversing 85 packages in order:\n-- +++ processing catkin package: amcl\n'
+            command sleep 2; echo "[ 14%] Building"; command sleep 2; echo "[100%] Built"; command sleep 2
+        }
         step Building logs/setup/build.log build
         step Waiting logs/setup/waiting.log command sleep 2
         """,
     )
     building, waiting = result.stdout.split("Waiting ...")
-    assert re.match(r"Building \.\.\.\n  \.\.\. \d+ s, 14 %\n", building)
+    assert re.match(r"Building \.\.\.\n  \.\.\. \d+ s, 1 of 85 packages configured\n", building)
+    assert re.search(r"  \.\.\. \d+ s, 14 %\n", building)
     assert re.search(r"  \.\.\. \d+ s, 100 %\n", building)
     assert re.search(r"  \.\.\. \d+ s\n", waiting)
 
