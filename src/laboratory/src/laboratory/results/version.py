@@ -13,7 +13,7 @@ PACKAGES = (
     *("add_markers", "amcl_lite", "home_service", "laboratory", "move_base_lite", "pick_objects"),
     *("planar", "plugin_examples", "sim_bridge", "slam_lite", "supervision"),
 )
-PACKAGES_OVER_ROS = ("home_service_msgs", "map_lite", "planar_ros", "sim_bridge_msgs")
+PACKAGES_OVER_ROS = ("home_service_msgs", "map_lite", "planar_ros", "rospy_transport", "sim_bridge_msgs")
 ENDINGS = (".py", ".yaml", ".urdf", ".xacro")
 ENDINGS_OVER_ROS = (".launch", ".msg", ".srv", ".action")
 LIBRARIES = ("numpy", "scipy", "numba", "pybullet")
