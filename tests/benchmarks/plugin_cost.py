@@ -20,10 +20,9 @@ import numpy as np
 
 from amcl_lite import Localizer, LocalizerSettings
 from move_base_lite import Navigator, load_settings
-from move_base_lite.control.registry import GuardedLocalPlanner
 from move_base_lite.warmup import warm_up
 from planar import Pose2, load_map
-from planar.plugins import load_object
+from planar.extensions import Guard, load_object
 from sim_bridge import Simulation, load_world
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -72,7 +71,7 @@ def measure(name: str) -> Measurement:
     warm_up(settings)
     kind, call_times = load_object(name), CallTimes()
     with patch.object(kind, "follow", call_times.timed("planner", kind.follow)), patch.object(
-        GuardedLocalPlanner, "follow", call_times.timed("guarded", GuardedLocalPlanner.follow)
+        Guard, "call", call_times.timed("guarded", Guard.call)
     ), patch.object(Navigator, "tick", call_times.timed("tick", Navigator.tick)):
         drive(Navigator(settings, load_map(ROOT / "map" / "home.yaml")))
     guarded, planner = (np.array(call_times.ms[what]) for what in ("guarded", "planner"))

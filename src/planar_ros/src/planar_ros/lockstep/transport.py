@@ -207,7 +207,7 @@ def caller() -> str:
 
 
 def delaying_calls(wait: Callable[[int], None], monitor: Optional[CallMonitor] = None) -> BeforeCall:
-    """Return what ``rospy_transport.install`` calls before a service's callback.
+    """Return what ``rospy_transport.replacements.install`` calls before a service's callback.
 
     It delays each call of a synchronized node until ``wait(number of its instant)`` returns.
 
