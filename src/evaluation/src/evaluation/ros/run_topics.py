@@ -56,6 +56,9 @@ class EventTopic(NamedTuple):
 CLOCK = EventTopic("/clock", Clock, read.clock, (kinds.ClockAdvanced,), queue_size=1)
 CONTACTS = EventTopic("contacts", String, read.contacts, (kinds.BodiesTouched,), True)
 TRUTH = EventTopic("base_pose_ground_truth", Odometry, read.truth, (TruthUpdated,), True)
+GOAL_REQUESTS = EventTopic("move_base/goal", MoveBaseActionGoal, read.goal_request, (kinds.GoalRequested,))
+GOAL_STATUSES = EventTopic("move_base/status", GoalStatusArray, read.statuses, (kinds.GoalStatusUpdated,))
+GOAL_RESULTS = EventTopic("move_base/result", MoveBaseActionResult, read.goal_end, (kinds.GoalEnded,), True)
 TOPICS = (
     CLOCK,
     CONTACTS,
@@ -65,10 +68,10 @@ TOPICS = (
     EventTopic("/tf", TFMessage, read.transforms, (kinds.OdometryUpdated, kinds.CorrectionUpdated)),
     EventTopic("amcl_pose", PoseWithCovarianceStamped, read.estimate, (kinds.EstimateUpdated,), True),
     EventTopic("map", OccupancyGridArrays, read.grid, (kinds.MapPublished,)),
-    EventTopic("move_base/goal", MoveBaseActionGoal, read.goal_request, (kinds.GoalRequested,)),
-    EventTopic("move_base/status", GoalStatusArray, read.statuses, (kinds.GoalStatusUpdated,)),
+    GOAL_REQUESTS,
+    GOAL_STATUSES,
     EventTopic("move_base/current_goal", PoseStamped, read.accepted_goal, (kinds.GoalAccepted,), True),
-    EventTopic("move_base/result", MoveBaseActionResult, read.goal_end, (kinds.GoalEnded,), True),
+    GOAL_RESULTS,
     EventTopic("move_base/NavfnROS/plan", Path, read.plan, (kinds.PlanUpdated,)),
     EventTopic("deliver/goal", DeliverActionGoal, read.mission_request, (kinds.MissionRequested,)),
     EventTopic("pick_objects/mission_state", MissionState, read.mission, (kinds.MissionUpdated,)),
