@@ -6,11 +6,11 @@ from argparse import ArgumentTypeError
 
 import pytest
 
-from evaluation.options import speed_factor
 from home_service import commands
 from home_service.cli import main
 from home_service.commands.test_navigation import goal_list
 from supervision.cli import parse
+from supervision.view_options import speed_factor
 
 
 def test_goals_are_read_from_a_line():

@@ -239,7 +239,12 @@ Visualization Manager:
     assert displayed_topics(config) == {"/move_base/NavfnROS/plan"}
 
 
-@pytest.mark.parametrize("config", ["", "a: [", "- 1", "Visualization Manager: 3"])
+MERGED_OFTEN = "k0: &k0 {a: 1}\n" + "".join(
+    f"k{i}: &k{i} {{<<: [*k{i - 1}, *k{i - 1}]}}\n" for i in range(1, 40)
+)
+
+
+@pytest.mark.parametrize("config", ["", "a: [", "- 1", "Visualization Manager: 3", MERGED_OFTEN])
 def test_an_invalid_rviz_configuration_displays_nothing(config):
     assert displayed_topics(config) == set()
 

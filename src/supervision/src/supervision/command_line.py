@@ -107,7 +107,7 @@ def _settings(item: "Field[Any]") -> Dict[str, Any]:
     metavar = _metavar(item, how)
     if metavar:
         how.setdefault("metavar", metavar)
-    default = _shown_default(item.default)
+    default = _shown_default(item.default) if "flag" in how else ""
     how[MEANING] = (how[MEANING] + (f" (default: {default})" if default else "")).replace("%", "%%")
     return how
 

@@ -9,6 +9,7 @@ import rospy
 import yaml
 
 from cockpit.errors import CockpitError
+from planar.config.bounded_yaml import load_yaml
 
 LONGEST = 20_000
 
@@ -50,7 +51,7 @@ def filled(kind: Type[Any], text: str) -> Any:
         raise CockpitError(f"longer than {LONGEST} characters")
     message = kind()
     try:
-        fields = yaml.safe_load(text)
+        fields = load_yaml(text)
         if fields is not None and not isinstance(fields, (dict, list)):
             raise CockpitError("expected fields with values, such as 'data: 1.0'")
         if fields:
