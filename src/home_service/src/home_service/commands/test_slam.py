@@ -33,10 +33,10 @@ class TestSlam(MappingOptions):
         return 1.0 if self.speed is None and self.is_interactive else super().effective_speed
 
     def run(self) -> int:
-        from headless_mission.inputs import read_world
+        from headless_mission.inputs import read_mapped_world
         from home_service.ros.mapping import drive_by_keyboard, drive_in_browser, explore, make_map
 
-        read_world(self)
+        read_mapped_world(self)
         drive = {"keys": drive_by_keyboard, "page": drive_in_browser, "auto": explore}[self.drive]
         launch = self.mapping(explores=self.drive == "auto")
         return make_map(self, launch, drive)
