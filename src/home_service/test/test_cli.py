@@ -58,6 +58,24 @@ def test_interactive_commands_have_no_default_time_out(arguments, expected):
     assert parse(arguments, commands.FOLDER).time_limit == expected
 
 
+@pytest.mark.parametrize(
+    "arguments, speed",
+    [
+        (["test_navigation"], 1.0),
+        (["test_navigation", "--speed", "0"], 0.0),
+        (["test_navigation", "--goals", "1 2 3"], 0.0),
+        (["test_navigation", "--goals", "1 2 3", "--web"], 1.0),
+        (["launch"], 1.0),
+        (["home_service"], 0.0),
+        (["home_service", "--serve"], 1.0),
+        (["test_slam"], 1.0),
+        (["test_slam", "--drive", "auto"], 0.0),
+    ],
+)
+def test_a_run_that_waits_for_a_person_is_at_real_time_by_default(arguments, speed):
+    assert parse(arguments, commands.FOLDER).effective_speed == speed
+
+
 def test_a_headless_run_is_limited_by_simulated_time():
     assert parse(["rehearse"], commands.FOLDER).timeout == 600.0
 

@@ -139,7 +139,8 @@ class RunOptions:
 
     speed: Optional[float] = option(
         None,
-        "1 real time, N times that, 0 as fast as the nodes keep up (default: 0, with --rviz or --web 1)",
+        "1 real time, N times that, 0 as fast as the nodes keep up "
+        "(default: 1 if a person watches or Ctrl-C ends it, else 0)",
         type=speed_factor,
     )
     rviz: bool = option(False, "show it in rviz, if there is a display")
@@ -187,7 +188,7 @@ class RunOptions:
     @property
     def effective_speed(self) -> float:
         """Simulated seconds per wall-clock second; 0: as fast as the nodes keep up."""
-        return float(self.has_view) if self.speed is None else self.speed
+        return float(self.has_view or self.is_interactive) if self.speed is None else self.speed
 
     @property
     def has_view(self) -> bool:
