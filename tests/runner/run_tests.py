@@ -81,7 +81,14 @@ def run_ros_tests(folder: Path, paths: Sequence[Path], jobs: int, is_quick: bool
     """
     adopt_orphans()
     totals = Totals()
-    options = ["-vv", "-rs", "--no-header", f"--ros-logs={folder}", f"--junitxml={folder / 'ros.xml'}"]
+    options = [
+        "-vv",
+        "-rs",
+        "--no-header",
+        "-Wignore::pytest.PytestAssertRewriteWarning",
+        f"--ros-logs={folder}",
+        f"--junitxml={folder / 'ros.xml'}",
+    ]
     options += ["--quick"] if is_quick else []
     options += ["-n", str(jobs), "--dist", "worksteal"] if min(jobs, len(paths)) > 1 else ["-p", "no:xdist"]
     code = pytest.main([*options, *map(str, paths)], plugins=[totals])
