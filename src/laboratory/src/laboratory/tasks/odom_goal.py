@@ -2,14 +2,14 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Mapping, Optional, Sequence, Set, Tuple
+from typing import Mapping, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
 from evaluation.pedestrian_contacts import PedestrianContacts
 from evaluation.verdict import collision
 from headless_mission import NAVIGATION_CONFIG, EpisodeConditions
-from laboratory.tasks.task import COLLISION, FAILURE, SUCCESS, TIMEOUT, RunTrace
+from laboratory.tasks.task import COLLISION, FAILURE, SUCCESS, TIMEOUT, RunConditions, RunTrace
 from laboratory.worlds.barn import score
 from laboratory.worlds.source import Arena
 from move_base_lite import Navigator, Status
@@ -19,9 +19,6 @@ from planar.maps.places import parse_pose
 from sim_bridge import Simulation, StepResult, robot_named
 from sim_bridge.faults import FaultContext, FaultInjector
 from sim_bridge.simulation import ROBOT_NAME
-
-if TYPE_CHECKING:
-    from laboratory.scenario.scenario import Scenario
 
 
 @dataclass(frozen=True)
@@ -36,7 +33,7 @@ class OdomGoalTask:
     goal: Pose2
     radius: float = 1.0
 
-    def run(self, scenario: "Scenario", arena: Arena, seed: int) -> RunTrace:
+    def run(self, scenario: RunConditions, arena: Arena, seed: int) -> RunTrace:
         drive = _GoalDrive(scenario, arena, seed, self)
         try:
             outcome, reason = drive.run(scenario.seconds)
@@ -63,7 +60,7 @@ class OdomGoalTask:
     def required_poses(self, arena: Arena) -> Sequence[Pose2]:
         return ()
 
-    def reference_length(self, scenario: "Scenario", arena: Arena) -> Optional[float]:
+    def reference_length(self, scenario: RunConditions, arena: Arena) -> Optional[float]:
         return arena.reference_length
 
     def files(self) -> Tuple[Path, ...]:
@@ -76,7 +73,7 @@ class OdomGoalTask:
 class _GoalDrive:
     """One run: it ends at the goal, at the first collision, or when navigation fails."""
 
-    def __init__(self, scenario: "Scenario", arena: Arena, seed: int, task: OdomGoalTask):
+    def __init__(self, scenario: RunConditions, arena: Arena, seed: int, task: OdomGoalTask):
         settings = EpisodeConditions(scenario.planner, scenario.parameters).navigation(
             navigation_config(scenario.robot)
         )

@@ -137,5 +137,6 @@ CONTRACT: ExtensionPoint[LocalPlanner] = ExtensionPoint(
         is_lazy=True,
     ),
     ControllerSettings,
+    parameter="base_local_planner",
 )
 __getattr__ = deprecated_names(__name__, {"Situation": "ControlContext", "Exploration": "TrajectorySamples"})

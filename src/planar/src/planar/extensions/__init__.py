@@ -10,7 +10,7 @@ checks of a contract from the command line.
 from planar.extensions.guard import MAX_CALL_SECONDS, CallRules, Guard, InvalidAnswer, class_of
 from planar.extensions.loading import PluginError, load_object, source_files
 from planar.extensions.point import ExtensionPoint
-from planar.extensions.registry import Plugin, Registry
+from planar.extensions.registry import Plugin, Registry, SelectedPlugins, registries_of
 
 __all__ = [
     "MAX_CALL_SECONDS",
@@ -21,7 +21,9 @@ __all__ = [
     "Plugin",
     "PluginError",
     "Registry",
+    "SelectedPlugins",
     "class_of",
     "load_object",
+    "registries_of",
     "source_files",
 ]

@@ -60,7 +60,10 @@ class Guard:
         self._plugin: Optional[Any] = None
         self._was_called = False
         if not rules.is_lazy:
-            self._run(self._made)
+            try:
+                self._made()
+            except Exception as error:
+                raise self._failure(error) from error
 
     def call(self, method: str, names: Sequence[str], *given: Any, **named: Any) -> Any:
         """Call a method of the plugin.
@@ -75,8 +78,14 @@ class Guard:
             PlanarError: The plugin raised, answered what the rules do not allow, or took too long.
         """
         watch = Stopwatch() if self._rules.max_seconds < math.inf else None
-        given = (*given, *(named[name] for name in names[len(given) :] if name in named))
-        answer = self._run(self._answer, method, names, given)
+        if named:
+            given = (*given, *(named[name] for name in names[len(given) :] if name in named))
+        try:
+            answer = self._answer(method, names, given)
+        except self._rules.passes:
+            raise
+        except Exception as error:
+            raise self._failure(error) from error
         is_first, self._was_called = not self._was_called, True
         if watch is not None and not is_first and watch.seconds() > self._rules.max_seconds:
             raise self._rules.failure(f"{self._name} took {watch.seconds():.1f} s for an answer")
@@ -86,7 +95,9 @@ class Guard:
         writable = self._rules.writable
         views = [each if name in writable else _view(each) for name, each in zip(names, given)]
         answer = getattr(self._made(), method)(*views)
-        answer = next((each for each, view in zip(given, views) if view is answer), answer)
+        for each, view in zip(given, views):
+            if answer is view:
+                answer = each
         check = self._rules.answers.get(method)
         return answer if check is None else check(answer, *given)
 
@@ -95,16 +106,9 @@ class Guard:
             self._plugin = self._make()
         return self._plugin
 
-    def _run(self, action: Callable[..., Any], *given: Any) -> Any:
-        try:
-            return action(*given)
-        except InvalidAnswer as error:
-            raise self._rules.failure(f"{self._name} {error}") from None
-        except self._rules.passes:
-            raise
-        except Exception as error:
-            text = f"{self._name} raised {type(error).__name__}: {error}"
-            raise self._rules.failure(text) from error
+    def _failure(self, error: Exception) -> PlanarError:
+        what = str(error) if isinstance(error, InvalidAnswer) else f"raised {type(error).__name__}: {error}"
+        return self._rules.failure(f"{self._name} {what}")
 
     def __getattr__(self, name: str) -> Any:
         method = getattr(self._protocol, name, None)

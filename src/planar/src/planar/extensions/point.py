@@ -27,6 +27,7 @@ class ExtensionPoint(Generic[T]):
         settings: Dataclass from which the ``Settings`` of a class derive, and which it uses if it has none;
             None if classes of this kind have no settings.
         requirements: Further requirements: returns what a class lacks.
+        parameter: Parameter of the package that selects a class, if there is one for this.
     """
 
     kind: str
@@ -35,6 +36,12 @@ class ExtensionPoint(Generic[T]):
     rules: CallRules = CallRules()
     settings: Optional[type] = None
     requirements: Callable[[type], Iterable[str]] = _no_more
+    parameter: str = ""
+
+    @property
+    def package(self) -> str:
+        """Package that uses such classes."""
+        return self.group.partition(".")[0]
 
     def load(self, name: str) -> Optional[type]:
         """Load a user-defined class and check it.

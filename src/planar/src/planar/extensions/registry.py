@@ -72,6 +72,8 @@ class Registry(Generic[T]):
 
     def __init__(self, point: ExtensionPoint[T], *members: Plugin[T]):
         self.point, self.members = point, members
+        if point.parameter:
+            _selected[point.package, point.parameter] = self
         self._loaded: Dict[str, Plugin[T]] = {}
 
     @property
@@ -105,19 +107,55 @@ class Registry(Generic[T]):
             settings: Settings of the plugin; their type selects the plugin.
             given: Further arguments, as the contract states.
         """
-        known = (*self.members, *self._loaded.values())
-        member = next(each for each in known if each.settings is type(settings))
+        member = next(each for each in self._known if each.settings is type(settings))
         return member.make(settings, *given)
+
+    @property
+    def _known(self) -> Tuple[Plugin[T], ...]:
+        return (*self.members, *self._loaded.values())
 
     def _load(self, name: str) -> Optional[Plugin[T]]:
         found = self.point.load(name)
         if found is not None:
-            self._loaded[name] = Plugin(
-                name,
-                self.point.settings_of(found),
-                lambda *given: self.point.guarded(name, partial(found, *given)),
-            )
+            settings = self.point.settings_of(found)
+            if any(each.settings is settings for each in self._known):  # the type selects the plugin
+                settings = type(settings.__name__, (settings,), {"__doc__": settings.__doc__})
+            make = partial(self._guarded, name, found)
+            self._loaded[name] = Plugin(name, settings, make)
         return self._loaded.get(name)
+
+    def _guarded(self, name: str, found: type, *given: Any) -> T:
+        return self.point.guarded(name, partial(found, *given))
+
+
+_selected: Dict[Tuple[str, str], Registry[Any]] = {}
+
+
+def registries_of(package: str) -> Dict[str, Registry[Any]]:
+    """Return the registries from which a package selects a plugin, by the parameter that does."""
+    return {
+        parameter: _selected[owner, parameter] for owner, parameter in sorted(_selected) if owner == package
+    }
+
+
+class SelectedPlugins:
+    """The plugins that a component uses, constructed at their first use.
+
+    Args:
+        settings: Settings of the selected plugins by the parameter that selects them; for any other, the
+            first plugin of its registry is used.
+    """
+
+    def __init__(self, settings: Mapping[str, Any]):
+        self._settings = settings
+        self._made: Dict[str, Any] = {}
+
+    def __getitem__(self, registry: Registry[T]) -> T:
+        parameter = registry.point.parameter
+        if parameter not in self._made:
+            settings = self._settings.get(parameter) or registry.members[0].settings()
+            self._made[parameter] = registry.make(settings)
+        return self._made[parameter]
 
 
 def short_name(name: str) -> str:
