@@ -13,6 +13,7 @@ ROOT = structure.ROOT
 # From the lowest layer up; a package may import packages of lower layers only.
 LAYERS = (
     {"planar"},
+    {"rospy_transport"},
     {"supervision", "run_report"},
     {"planar_ros"},
     {"sim_bridge", "map_lite", "amcl_lite", "slam_lite", "move_base_lite", "explorer_lite"}

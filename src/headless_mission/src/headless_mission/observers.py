@@ -6,7 +6,8 @@ import numpy as np
 
 from add_markers import CarriedParcel
 from evaluation.delivery_monitor import DeliveryMonitor
-from evaluation.marker_log import PARCEL, MarkerLog, MarkerState
+from evaluation.events import DELETE, SHOW, MarkerUpdated
+from evaluation.marker_log import PARCEL, MarkerLog
 from evaluation.pedestrian_contacts import PedestrianContacts
 from evaluation.verdict import ERRAND, MARKERS, MissionRecord, Verdict, judge
 from headless_mission.errand import ErrandHooks
@@ -81,7 +82,8 @@ class MissionObserver(ContactObserver):
         self._errors.append(truth.distance_to(base_in_map))
         if self._parcel is not None:
             shown_at = self._parcel.update(step.stamp, base_in_map)
-            self._markers.add(MarkerState(PARCEL, shown_at or Pose2(), is_hidden=shown_at is None))
+            at, action = (Pose2(), DELETE) if shown_at is None else (shown_at, SHOW)
+            self._markers.add(MarkerUpdated(step.stamp, PARCEL, 0, (at.x, at.y, 0.0), action))
         if self._errand.is_started:
             errand = self._errand.errand
             self._record.final_state = errand.state.value

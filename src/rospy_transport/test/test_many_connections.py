@@ -6,20 +6,24 @@ from contextlib import ExitStack
 from types import SimpleNamespace
 
 import pytest
-from rospy.impl import tcpros_base
 from rospy.impl.registration import RegManager
 from rospy.impl.tcpros_base import TCPServer
 
-from planar_ros.node.connections import extend_listen_backlog, merge_publisher_updates
+from rospy_transport.replacements import install, uninstall
 
 # Below TCP's first retransmission after 1 s.
 SECONDS = 0.5
 
 
+@pytest.fixture(autouse=True)
+def installed():
+    install()
+    yield
+    uninstall()
+
+
 @pytest.fixture
-def server(monkeypatch):
-    monkeypatch.setattr(tcpros_base.TCPServer, "_create_server_sock", TCPServer._create_server_sock)
-    extend_listen_backlog()
+def server():
     server = TCPServer(lambda connection, address: None)
     yield server
     server.shutdown()
@@ -33,10 +37,8 @@ def test_connections_to_a_busy_node_need_no_tcp_retry(server):
 
 
 @pytest.fixture
-def connect_after(monkeypatch):
+def connect_after():
     """Returns the publishers that a node connects to after publisher updates from the master."""
-    monkeypatch.setattr(RegManager, "publisher_update", RegManager.publisher_update)
-    merge_publisher_updates()
 
     def connected(number, *updates):
         requested, enough = [], threading.Event()

@@ -3,10 +3,11 @@
 import socket
 import threading
 import time
+from types import SimpleNamespace
 
 import pytest
 
-from planar_ros.node.connections import ImmediateConnection
+from rospy_transport.replacements import ImmediateConnection
 
 
 class Transport:
@@ -14,6 +15,7 @@ class Transport:
 
     def __init__(self, end):
         self.socket, self.done, self.stat_bytes, self.stat_num_msg = end, False, 0, 0
+        self.endpoint_id, self.protocol = "/subscriber", SimpleNamespace(resolved_name="/topic")
         self.senders = []
 
     def set_cleanup_callback(self, callback):

@@ -8,6 +8,7 @@ import rosgraph
 import rospy
 
 from planar_ros.lockstep.transport import ANSWER_TOPIC, STATIC_TOPIC
+from rospy_transport.connections import outgoing
 from supervision.ros.node_api import TimedTransport
 
 ANSWER_SECONDS = 1.0
@@ -70,15 +71,14 @@ class ConnectionCheck:
 
     def _outgoing(self, name: str) -> Set[Tuple[str, str, str]]:
         if name == rospy.get_name():
-            bus = rospy.topics.get_topic_manager().get_pub_sub_info()
-        else:
-            if name not in self._uris:
-                self._uris[name] = _query(self._master, "lookupNode", name)
-            try:
-                bus = _query(self._uris[name], "getBusInfo")
-            except _UNAVAILABLE:
-                del self._uris[name]
-                raise
+            return {(name, topic, receiver) for receiver, topic, _ in outgoing()}
+        if name not in self._uris:
+            self._uris[name] = _query(self._master, "lookupNode", name)
+        try:
+            bus = _query(self._uris[name], "getBusInfo")
+        except _UNAVAILABLE:
+            del self._uris[name]
+            raise
         return {(name, topic, receiver) for _, receiver, direction, _, topic, *_ in bus if direction == "o"}
 
 
