@@ -54,7 +54,7 @@ class CockpitToolsTest(unittest.TestCase):
         self.assertEqual(self.page.errors, [])
 
     def open(self, title):
-        self.page.click(title)
+        self.page.tick(title)
         self.opened = title
 
     def test_the_graph_is_drawn(self):
