@@ -27,7 +27,7 @@ from headless_mission import NAVIGATION_CONFIG, HeadlessMission
 from headless_mission.navigation import NavigationHooks
 from move_base_lite import Decision, Status, load_settings
 from pick_objects import load_mission
-from planar import OccupancyGrid, PlanarError, Pose2, save_map
+from planar import OccupancyGrid, PlanarError, Pose2, Scan, save_map
 from planar.config.parameters import settings_from_yaml
 from planar.maps.map_score import MapScore
 from planar_ros.node.entry import use_one_blas_thread
@@ -105,8 +105,9 @@ class MappingRun(EpisodeHooks):
 
     def after_step(self, episode: Episode, step: StepResult) -> None:
         self.collisions += len(step.contacts)
-        if step.scan is not None:
-            self._new_grid = self._map(step) or self._new_grid
+        scan = step.scan
+        if scan is not None:
+            self._new_grid = self._map(step, scan) or self._new_grid
 
     def at_tick(self, episode: Episode, step: StepResult) -> None:
         """Advance the exploration by the outcome of the last tick; its hooks precede those of navigation."""
@@ -120,15 +121,15 @@ class MappingRun(EpisodeHooks):
         elif isinstance(order, FinishTask):
             self._end = order
 
-    def _map(self, seen: StepResult) -> Optional[OccupancyGrid]:
-        update = self.mapper.insert(seen.odometry.base_in_odom, seen.scan)
+    def _map(self, seen: StepResult, scan: Scan) -> Optional[OccupancyGrid]:
+        update = self.mapper.insert(seen.odometry.base_in_odom, scan)
         if update is not None:
             self._navigation.poses.set_odom_in_map(update.odom_in_map)
             if update.is_keyframe:
                 self.true_keyframes.append(seen.base_in_world.as_array())
-        if seen.scan.stamp - self._map_stamp < self._settings.map_update_interval:
+        if scan.stamp - self._map_stamp < self._settings.map_update_interval:
             return None
-        self._map_stamp = seen.scan.stamp
+        self._map_stamp = scan.stamp
         grid = self.grid(self._settings.extent)
         self._navigation.move_base.set_map(grid)
         return grid

@@ -50,9 +50,9 @@ def tree(tmp_path):
     return tmp_path
 
 
-def test_the_page_has_examples_of_a_planner_a_sensor_a_command_and_a_result():
+def test_the_page_has_examples_of_a_planner_a_check_a_sensor_a_command_and_a_result():
     names = " ".join(example.name for example in examples())
-    assert all(word in names for word in ("planner", "sensor", "command", "result.json")), names
+    assert all(word in names for word in ("planner", "check", "sensor", "command", "result.json")), names
 
 
 @pytest.mark.parametrize("example", examples(), ids=lambda example: example.name)
