@@ -13,8 +13,6 @@ readonly root
 readonly noetic=/opt/ros/noetic
 # shellcheck source=scripts/setup/environment.sh
 . "$root/scripts/setup/environment.sh"
-readonly experiments=(play evaluate tune falsify)   # the commands of the laboratory
-readonly environments=(gymnasium train) # those of home_service_gym
 step_pid=
 clock_pid=
 aside_pid=
@@ -26,8 +24,10 @@ fail() {
     exit 1
 }
 
-usage() { # prints the head comment of the script that was started
-    sed -n '2,/^$/ s/^# \{0,1\}//p' "$0"
+usage() { # prints the usage of the script that was started: generated from its command's options, or its head comment
+    local file
+    file=$root/scripts/usage/$(basename -- "$(readlink -f -- "$0")" .sh).txt
+    if [[ -e $file ]]; then cat "$file"; else sed -n '2,/^$/ s/^# \{0,1\}//p' "$0"; fi
 }
 
 is_among() { # WORD LIST...
@@ -154,20 +154,16 @@ is_asked_for_web() { # ARGUMENT...
     is_among --web "$@" || is_among --web-port "${@%%=*}"
 }
 
-run_command() { # NAME ARGUMENT...: a command, after the set-up it needs
+run_command() { # PACKAGE NAME ARGUMENT...: a command, after the set-up it needs
     answer_help "$@"
-    local extras=() package=home_service
+    local extras=()
     if is_among --rviz "$@" && [[ -n ${DISPLAY:-} ]]; then extras=(rviz); fi
-    if is_asked_for_web "$@" || [[ $1 == cockpit ]]; then extras+=(cockpit); fi
-    if is_among "$1" "${experiments[@]}"; then
-        package=laboratory
-        extras+=(laboratory)
-    fi
-    if is_among "$1" "${environments[@]}"; then
-        package=home_service_gym
-        extras+=(gymnasium)
-    fi
+    if is_asked_for_web "$@" || [[ $2 == cockpit ]]; then extras+=(cockpit); fi
+    case $1 in
+        laboratory) extras+=(laboratory) ;;
+        home_service_gym) extras+=(gymnasium) ;;
+    esac
     set_up "${extras[@]}"
     enter_workspace
-    exec python3 -m "$package" "$@"
+    exec python3 -m "$@"
 }

@@ -17,9 +17,9 @@ from typing import Any, Dict, List, NamedTuple, Optional
 
 import numpy as np
 
+from headless_mission import HeadlessMission, parcel_for
+from headless_mission.inputs import read_mission
 from home_service.commands.rehearse import Rehearse
-from home_service.headless import HeadlessMission, parcel_for
-from home_service.inputs import read_mission
 
 ROOT = Path(__file__).resolve().parents[2]
 TRUTH = "/base_pose_ground_truth"

@@ -17,8 +17,8 @@ from typing import Any, Dict, List, Optional, Sequence
 import yaml
 from soak import RUNS, Graph, Leftovers
 
-from home_service.headless.fault_comparison import START
-from home_service.judging.verdict import ARRIVAL_TOLERANCE
+from evaluation.verdict import ARRIVAL_TOLERANCE
+from headless_mission.fault_comparison import START
 from planar import write_atomically
 from sim_bridge.faults import KINDS, default_strength
 from supervision.versions import provenance

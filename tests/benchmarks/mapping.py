@@ -20,10 +20,10 @@ from typing import List, Optional
 import numpy as np
 from helpers.command_line import seeds
 
+from evaluation.map_truth import LEAST_PRECISION, LEAST_RECALL, score_against_world
+from evaluation.verdict import ARRIVAL_TOLERANCE
 from explorer_lite import Explorer, ExplorerSettings, FinishTask, GoalFailed, GoalReached, SendGoal
-from home_service.headless import NAVIGATION_CONFIG, HeadlessMission
-from home_service.judging.map_truth import LEAST_PRECISION, LEAST_RECALL, score_against_world
-from home_service.judging.verdict import ARRIVAL_TOLERANCE
+from headless_mission import NAVIGATION_CONFIG, HeadlessMission
 from move_base_lite import Decision, Navigator, Status, load_settings
 from pick_objects import load_mission
 from planar import OccupancyGrid, PlanarError, Pose2, Twist2, save_map

@@ -22,8 +22,8 @@ import numpy as np
 from helpers.drives import Observation, Tour, drive
 from scipy.ndimage import label
 
-from home_service.headless import HeadlessMission
-from home_service.judging.map_truth import score_against_world
+from evaluation.map_truth import score_against_world
+from headless_mission import HeadlessMission
 from pick_objects import load_mission
 from planar import FREE, OCCUPIED, OccupancyGrid, Pose2, save_map
 from planar.config.parameters import settings_from_yaml

@@ -9,8 +9,8 @@ import rostest
 from ground_truth import wait_for_ground_truth
 from waiting import wait_until
 
+from evaluation.ros.referee import Referee
 from home_service import Commander, CommanderError, Result
-from home_service.ros.referee import Referee
 from planar import Pose2, wrap
 from planar_ros.calls.load_map import LoadMap
 

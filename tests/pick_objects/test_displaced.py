@@ -12,7 +12,7 @@ from home_service_msgs.msg import DeliverAction, DeliverGoal
 from std_msgs.msg import String
 from std_srvs.srv import Empty
 
-from home_service.ros.referee import Referee
+from evaluation.ros.referee import Referee
 from planar_ros.calls.actions import server_is_ready
 
 WALL_DEADLINE = 80.0

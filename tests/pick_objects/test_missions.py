@@ -19,8 +19,8 @@ from nav_msgs.msg import Odometry
 from recording import MessageRecorder
 from visualization_msgs.msg import Marker
 
-from home_service.judging.verdict import ERRAND, OBJECTS, judge
-from home_service.ros.referee import Referee
+from evaluation.ros.referee import Referee
+from evaluation.verdict import ERRAND, OBJECTS, judge
 from pick_objects import parse_mission
 from planar import Pose2
 from planar_ros.calls.actions import KILLED_TEXT, goal_is_over, server_is_ready

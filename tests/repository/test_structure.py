@@ -17,10 +17,13 @@ LAYERS = (
     {"sim_bridge", "map_lite", "amcl_lite", "slam_lite", "move_base_lite", "explorer_lite"}
     | {"pick_objects", "add_markers", "follow_me", "teleop_lite"},
     {"cockpit"},
-    {"home_service", "plugin_examples", "turtle_world", "gazebo_ros", "ros_tools", "ament_index_python"}
+    {"evaluation"},
+    {"headless_mission"},
+    {"plugin_examples", "turtle_world", "gazebo_ros", "ros_tools", "ament_index_python"}
     | {"turtlebot3_fake", "turtlebot3_gazebo", "turtlebot3_example", "rtabmap_ros", "multirobot_map_merge"},
     {"run_project", "laboratory"},
     {"home_service_gym"},
+    {"home_service"},
 )
 # Lines of the mechanism of extension points, with all checks of contracts and templates.
 MOST_EXTENSION_LINES = 2400

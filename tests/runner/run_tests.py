@@ -22,7 +22,7 @@ from containment import ROOT, run_contained
 from outcome import Outcome, failure, judge_unit_tests
 from ros_test import RosTest, log_of
 
-from home_service.options import count
+from supervision.command_line import count
 from supervision.interruption import on_signals
 
 PYTEST = ("-m", "pytest", "-n", "auto", "--dist", "worksteal")

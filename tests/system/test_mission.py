@@ -7,8 +7,8 @@ import unittest
 import rospy
 import rostest
 
-from home_service.judging.verdict import ERRAND, MARKERS, judge
-from home_service.ros.referee import Referee
+from evaluation.ros.referee import Referee
+from evaluation.verdict import ERRAND, MARKERS, judge
 from planar.maps.places import load_pickup_and_dropoff
 
 SIMULATED_DEADLINE = 240.0

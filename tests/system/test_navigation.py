@@ -12,7 +12,7 @@ from ground_truth import wait_for_ground_truth
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from visualization_msgs.msg import Marker
 
-from home_service.ros.referee import Referee
+from evaluation.ros.referee import Referee
 from planar import Pose2
 from planar_ros.calls.actions import server_is_ready
 from planar_ros.messages.conversion import pose2_to_msg

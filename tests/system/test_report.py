@@ -19,7 +19,7 @@ from processes import marked_environment, processes_of, processes_with
 from run_report import load_record
 
 ROOT = Path(__file__).resolve().parents[2]
-SCHEMA = ROOT / "src/home_service/config/result.schema.json"
+SCHEMA = ROOT / "src/evaluation/config/result.schema.json"
 FILES = {"report.html", "run.png", "record.json", "result.json", "trace.txt", "log"}
 FILES |= {f"trajectory_{name}.tum" for name in ("true", "estimated", "odometry")}
 FULL = 100 * 1024  # room for logs and little more, bytes

@@ -6,10 +6,11 @@ from argparse import ArgumentTypeError
 
 import pytest
 
+from evaluation.options import speed_factor
 from home_service import commands
-from home_service.cli import main, parse
+from home_service.cli import main
 from home_service.commands.test_navigation import goal_list
-from home_service.options import speed_factor
+from supervision.cli import parse
 
 
 def test_goals_are_read_from_a_line():
@@ -33,7 +34,7 @@ def test_an_invalid_speed_is_refused(text):
 )
 def test_every_command_has_a_help_text(command, capsys):
     with pytest.raises(SystemExit) as stop:
-        parse([command, "--help"])
+        parse([command, "--help"], commands.FOLDER)
     assert stop.value.code == 0
     assert "--seed" in capsys.readouterr().out
 
@@ -50,11 +51,11 @@ def test_every_command_has_a_help_text(command, capsys):
     ],
 )
 def test_interactive_commands_have_no_default_time_out(arguments, expected):
-    assert parse(arguments).time_limit == expected
+    assert parse(arguments, commands.FOLDER).time_limit == expected
 
 
 def test_a_headless_run_is_limited_by_simulated_time():
-    assert parse(["rehearse"]).timeout == 600.0
+    assert parse(["rehearse"], commands.FOLDER).timeout == 600.0
 
 
 @pytest.mark.parametrize("option", ["world", "map", "zones"])
@@ -95,7 +96,7 @@ def test_an_unknown_option_is_reported_with_the_name_of_the_script(command, caps
 
 def test_every_command_has_a_class_with_a_summary_and_a_run_method(capsys):
     with pytest.raises(SystemExit) as stop:
-        parse(["--help"])
+        parse(["--help"], commands.FOLDER)
     assert stop.value.code == 0
     text = capsys.readouterr().out
     for name in commands.FOLDER.names():

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import pytest
 
-from home_service.cli import parse
 from laboratory import commands
 from laboratory.campaign import Campaign, ScenarioRun, Workers, campaign
 from laboratory.campaign.progress import CampaignProgress
@@ -19,6 +18,7 @@ from laboratory.runner import run_scenario
 from laboratory.scenario import read_scenario
 from laboratory.suites import FOLDER
 from planar import FileWriteError
+from supervision.cli import parse
 
 SEEDS = tuple(range(6))
 

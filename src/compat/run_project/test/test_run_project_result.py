@@ -15,7 +15,7 @@ from run_project.ros.project_run import ProjectCommand
 from supervision.display import Display
 from supervision.interruption import INTERRUPTED, RunInterruptedError
 
-SCHEMA = Path(__file__).resolve().parents[3] / "home_service/config/result.schema.json"
+SCHEMA = Path(__file__).resolve().parents[3] / "evaluation/config/result.schema.json"
 
 
 class FakeRun:

@@ -1,4 +1,4 @@
-"""The home service robot as a whole: launch, supervise and judge missions; command the robot from Python."""
+"""The home service robot as a whole: commands, and the Commander that drives the robot from Python."""
 
 from typing import TYPE_CHECKING
 

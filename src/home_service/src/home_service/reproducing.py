@@ -5,8 +5,8 @@ import shlex
 from pathlib import Path
 from typing import Any, Dict
 
+from evaluation.trace import first_difference, read_trace
 from home_service import cli, commands
-from home_service.judging.trace import first_difference, read_trace
 from planar import SettingsError
 from planar.files.reading import read_text
 from supervision.versions import versions

@@ -1,10 +1,10 @@
 """Compile the kernels of all nodes ahead of time, so that no node has to compile when it starts."""
 
 import slam_lite.warming
+from evaluation.preload import load_kernels
 from explorer_lite.explorer import warm_up as warm_up_explorer
+from headless_mission import NAVIGATION_CONFIG, EpisodeConditions
 from home_service.commands.rehearse import Rehearse
-from home_service.headless import NAVIGATION_CONFIG, EpisodeConditions
-from home_service.preload import load_kernels
 from move_base_lite.control import LOCAL_PLANNERS
 from move_base_lite.warmup import warm_up as warm_up_navigator
 

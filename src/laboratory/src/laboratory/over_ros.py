@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, List, Mapping
 
 import numpy as np
 
-from home_service.judging.verdict import collision
+from evaluation.verdict import collision
 from laboratory.tasks.task import COLLISION, FAILURE, SUCCESS, TIMEOUT, RunTrace
 from laboratory.worlds.source import Arena
 from planar import SettingsError

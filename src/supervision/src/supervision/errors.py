@@ -19,6 +19,10 @@ class LaunchError(PlanarError):
         self.is_bad_input = is_bad_input
 
 
+class ResultError(PlanarError):
+    """The result of a run cannot be written, so the run is no success for programs."""
+
+
 class RunInterruptedError(KeyboardInterrupt):
     """Ctrl-C was pressed, or a signal asked the run to end."""
 

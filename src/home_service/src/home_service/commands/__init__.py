@@ -1,5 +1,5 @@
 """Commands of the scripts, one a module; a new module needs no registration."""
 
-from home_service.command import CommandFolder
+from supervision.command import CommandFolder
 
 FOLDER = CommandFolder(__name__, __path__)

@@ -2,8 +2,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Optional
 
-from home_service.judging.verdict import ERRAND, MARKERS, OBJECTS
-from home_service.options import GraphOptions, MissionOptions
+from evaluation.options import GraphOptions, MissionOptions
+from evaluation.verdict import ERRAND, MARKERS, OBJECTS
 from supervision.command_line import option
 
 # All nodes but the simulator are respawned, and resume from a checkpoint.
@@ -12,14 +12,22 @@ RESPAWNED = ("amcl", "move_base", "map_server", "robot_state_publisher", "pick_o
 
 @dataclass(frozen=True)
 class HomeService(GraphOptions, MissionOptions):
-    """Fetch the object at the pick-up zone and deliver it at the drop-off zone."""
+    """Fetch the object at the pick-up zone and deliver it at the drop-off zone.
+
+    Or runs another mission. Prints the run folder with logs and result.json, and a verdict.
+
+    Exit code: 0 success, and Ctrl-C with --serve; 1 failure or no result.json, 2 invalid input, 130
+    interrupted.
+    """
 
     faults: Optional[Path] = option(
-        None, "YAML with a list of faults; default: those of the mission", type=Path, metavar="FILE"
+        None,
+        "YAML with a list of faults (docs/reference/faults.md; default: that of the mission)",
+        type=Path,
     )
     serve: bool = option(False, "wait for missions sent to the action deliver, until Ctrl-C")
     marker_source: str = option(
-        "tf", "source of the robot's pose for the marker", choices=("tf", "amcl_pose", "odom", "state")
+        "tf", "source of the robot pose for the marker", choices=("tf", "amcl_pose", "odom", "state")
     )
 
     @property
@@ -27,8 +35,8 @@ class HomeService(GraphOptions, MissionOptions):
         return self.serve
 
     def run(self) -> int:
-        from home_service.inputs import read_mission
-        from home_service.ros.run_modes import run_to_completion, run_until_interrupted
+        from evaluation.ros.run_modes import run_to_completion, run_until_interrupted
+        from headless_mission.inputs import read_mission
 
         places = read_mission(self).places
         launch = self.launch(

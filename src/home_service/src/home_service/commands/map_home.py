@@ -1,14 +1,17 @@
 from dataclasses import dataclass
 
-from home_service.options import MappingOptions
+from evaluation.options import MappingOptions
 
 
 @dataclass(frozen=True)
 class MapHome(MappingOptions):
-    """Let the robot explore the world, save its map, and score it against the true one."""
+    """Explore a world with SLAM, return, save the map, and score it against the true one.
+
+    Exit code: 0 success, 1 failure or no result.json, 2 invalid input, 130 interrupted.
+    """
 
     def run(self) -> int:
-        from home_service.inputs import read_world
+        from headless_mission.inputs import read_world
         from home_service.ros.mapping import make_scored_map
 
         stage = read_world(self)

@@ -2,7 +2,7 @@ import argparse
 from dataclasses import dataclass
 from typing import List, Optional, Sequence, Tuple
 
-from home_service.options import DrivingOptions, GraphOptions
+from evaluation.options import DrivingOptions, GraphOptions
 from supervision.command_line import option
 
 
@@ -24,10 +24,17 @@ def goal_list(text: str) -> List[List[float]]:
 
 @dataclass(frozen=True)
 class TestNavigation(GraphOptions, DrivingOptions):
-    """Start home, localization and navigation; goals by hand or from --goals."""
+    """Start home, localization and navigation; goals by hand or from --goals.
+
+    Exit code: 0 success, and Ctrl-C without --goals; 1 failure or no result.json, 2 invalid input, 130
+    interrupted.
+    """
 
     goals: Optional[Tuple[Sequence[float], ...]] = option(
-        None, "drive to these poses, then end", type=goal_list, metavar='"X Y YAW; X Y YAW"'
+        None,
+        "drive to these poses of the map (metres, radians), then end",
+        type=goal_list,
+        metavar='"X Y YAW; X Y YAW"',
     )
 
     @property
@@ -35,9 +42,9 @@ class TestNavigation(GraphOptions, DrivingOptions):
         return self.goals is None
 
     def run(self) -> int:
-        from home_service.inputs import read_goals
+        from evaluation.ros.run_modes import run_until_interrupted
+        from headless_mission.inputs import read_goals
         from home_service.ros.goal_sequence import drive_to_goals
-        from home_service.ros.run_modes import run_until_interrupted
         from planar import Pose2
 
         goals = [Pose2(*goal) for goal in self.goals or ()]

@@ -8,12 +8,12 @@ import rospy
 from nav_msgs.msg import Odometry
 from std_msgs.msg import String
 
-from home_service.judging.verdict import ERRAND, Verdict
-from home_service.options import LaunchPlan, RunOptions
-from home_service.ros.referee import Referee
-from home_service.ros.run import Run
-from home_service.ros.run_recorder import RunRecorder
-from home_service.ros.subscriptions import subscribe
+from evaluation.options import LaunchPlan, RunOptions
+from evaluation.ros.referee import Referee
+from evaluation.ros.run import Run
+from evaluation.ros.run_recorder import RunRecorder
+from evaluation.ros.subscriptions import subscribe
+from evaluation.verdict import ERRAND, Verdict
 from planar import Pose2
 from planar.maps.places import NamedPlace
 from planar_ros.messages.conversion import pose2_from_msg

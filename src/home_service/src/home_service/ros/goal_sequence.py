@@ -5,11 +5,11 @@ from typing import List, Optional, Sequence
 import rospy
 from move_base_msgs.msg import MoveBaseActionResult
 
-from home_service.judging.verdict import ARRIVAL_TOLERANCE, Verdict
-from home_service.options import LaunchPlan, RunOptions
-from home_service.ros.referee import Referee
-from home_service.ros.run import Run
-from home_service.ros.run_recorder import RunRecorder
+from evaluation.options import LaunchPlan, RunOptions
+from evaluation.ros.referee import Referee
+from evaluation.ros.run import Run
+from evaluation.ros.run_recorder import RunRecorder
+from evaluation.verdict import ARRIVAL_TOLERANCE, Verdict
 from planar import Pose2
 from planar.driving import DriveOutcome, DriveResult
 from planar_ros.calls.move_base import MoveBaseClient

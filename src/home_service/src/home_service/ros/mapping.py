@@ -11,14 +11,14 @@ from typing import Callable, List, Optional
 from actionlib_msgs.msg import GoalStatus
 from home_service_msgs.msg import ExploreActionFeedback, ExploreActionResult
 
-from home_service.inputs import WorldInputs
-from home_service.judging.map_truth import judge_map, score_against_world
-from home_service.judging.verdict import Verdict
-from home_service.options import LaunchPlan, MappingOptions
-from home_service.ros.referee import Referee
-from home_service.ros.run import Run
-from home_service.ros.run_recorder import RunRecorder
-from home_service.ros.subscriptions import subscribe
+from evaluation.map_truth import judge_map, score_against_world
+from evaluation.options import LaunchPlan, MappingOptions
+from evaluation.ros.referee import Referee
+from evaluation.ros.run import Run
+from evaluation.ros.run_recorder import RunRecorder
+from evaluation.ros.subscriptions import subscribe
+from evaluation.verdict import Verdict
+from headless_mission.inputs import WorldInputs
 from planar import Pose2, SettingsError, load_map
 from supervision.display import Display
 from supervision.errors import LaunchError

@@ -6,13 +6,13 @@ from typing import Optional, Sequence
 import rospy
 from std_msgs.msg import String
 
-from home_service.judging.verdict import Verdict
-from home_service.options import LaunchPlan, RunOptions
+from evaluation.options import LaunchPlan, RunOptions
+from evaluation.ros.referee import Referee
+from evaluation.ros.run import Run
+from evaluation.ros.run_recorder import RunRecorder
+from evaluation.verdict import Verdict
 from home_service.ros.bags import BROKEN, ENDED
 from home_service.ros.mapping import save_map
-from home_service.ros.referee import Referee
-from home_service.ros.run import Run
-from home_service.ros.run_recorder import RunRecorder
 from planar_ros.bags.bag_reader import LASER_SCAN, BagError
 from planar_ros.bags.recording import Recording
 from supervision.display import Display

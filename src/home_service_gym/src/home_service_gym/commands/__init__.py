@@ -1,5 +1,5 @@
 """The commands of the Gymnasium environments; a new module in this folder is found automatically."""
 
-from home_service.command import CommandFolder
+from supervision.command import CommandFolder
 
 FOLDER = CommandFolder(__name__, __path__)

@@ -3,9 +3,9 @@
 import tempfile
 from pathlib import Path
 
-from home_service.judging.verdict import ERRAND, MARKERS, OBJECTS
-from home_service.options import LaunchPlan, RunOptions
-from home_service.ros.run_modes import run_to_completion
+from evaluation.options import LaunchPlan, RunOptions
+from evaluation.ros.run_modes import run_to_completion
+from evaluation.verdict import ERRAND, MARKERS, OBJECTS
 from laboratory.launch_files import write_launch_files
 from laboratory.scenario import Scenario
 from pick_objects import load_mission

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any, Callable, Dict, Mapping, Tuple, TypeVar
 
-from home_service.headless import EpisodeConditions
+from headless_mission import EpisodeConditions
 from laboratory.scenario.registry import TASKS, WORLD_SOURCES
 from laboratory.scenario.scenario import OFFICIAL, Scenario
 from laboratory.scenario.seeds import parse_seeds

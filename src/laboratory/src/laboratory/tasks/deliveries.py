@@ -5,14 +5,14 @@ from pathlib import Path
 from typing import Mapping, Optional, Sequence, Tuple
 
 from add_markers import CarriedParcel
-from home_service.headless import (
+from evaluation.verdict import collision
+from headless_mission import (
     NAVIGATION_CONFIG,
     EpisodeConditions,
     EpisodeResult,
     HeadlessMission,
     parcel_for,
 )
-from home_service.judging.verdict import collision
 from laboratory.tasks.shortest_paths import shortest_path_length
 from laboratory.tasks.task import COLLISION, FAILURE, SUCCESS, TIMEOUT, RunConditions, RunTrace
 from laboratory.worlds.source import Arena

@@ -6,9 +6,9 @@ from typing import Mapping, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
-from home_service.headless import NAVIGATION_CONFIG, EpisodeConditions
-from home_service.judging.pedestrian_contacts import PedestrianContacts
-from home_service.judging.verdict import collision
+from evaluation.pedestrian_contacts import PedestrianContacts
+from evaluation.verdict import collision
+from headless_mission import NAVIGATION_CONFIG, EpisodeConditions
 from laboratory.tasks.task import COLLISION, FAILURE, SUCCESS, TIMEOUT, RunConditions, RunTrace
 from laboratory.worlds.barn import score
 from laboratory.worlds.source import Arena

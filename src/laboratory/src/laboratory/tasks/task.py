@@ -36,7 +36,7 @@ class RunTrace:
         collisions: Names of the bodies the robot collided with.
         reference_length: Length of the shortest path [m].
         score: Score of the benchmark.
-        people: (N, P, 5) pedestrians as in ``home_service.judging.pedestrian_contacts``.
+        people: (N, P, 5) pedestrians as in ``evaluation.pedestrian_contacts``.
         people_at_fault: Names of the pedestrians who touched the robot by their own fault.
     """
 

@@ -1,0 +1,102 @@
+"""Track the deliveries of a mission and measure the true position error at each pick-up and set-down."""
+
+from typing import Callable, Dict, List, Mapping, NamedTuple, Optional, Tuple
+
+from evaluation.verdict import ARRIVAL_TOLERANCE, DeliveryRecord
+from pick_objects import Delivery, DeliveryStage
+from planar import Pose2
+from planar.maps.places import NamedPlace
+
+ENDS = (DeliveryStage.DELIVERED, DeliveryStage.FAILED, DeliveryStage.CANCELLED)
+
+
+class _Action(NamedTuple):
+    """Picking up or setting down: the stage in which it is done, the stage after it, and what to log."""
+
+    during: DeliveryStage
+    done: DeliveryStage
+    text: str
+
+
+PICK_UP = _Action(DeliveryStage.PICKING_UP, DeliveryStage.CARRYING, "picked up")
+SET_DOWN = _Action(DeliveryStage.SETTING_DOWN, DeliveryStage.DELIVERED, "set down")
+
+
+class DeliveryMonitor:
+    """Keeps a record of each delivery.
+
+    Args:
+        places: Places by name; more may be added later.
+        records: List of the records, extended and updated in place.
+        log: Called with a line at each arrival, and at a pick-up or set-down that is too far from its place.
+    """
+
+    def __init__(
+        self, places: Mapping[str, NamedPlace], records: List[DeliveryRecord], log: Callable[[str], None]
+    ):
+        self._places, self._records, self._log = places, records, log
+        self._stages: Dict[str, DeliveryStage] = {}
+
+    def update(
+        self, delivery: Delivery, stage: DeliveryStage, attempts: int, reason: str, truth: Optional[Pose2]
+    ) -> None:
+        """Update the record of a delivery.
+
+        Args:
+            delivery: The delivery.
+            stage: Its current stage.
+            attempts: Goals sent for it so far.
+            reason: Why it failed.
+            truth: True pose of the robot in the world at that time, if known.
+        """
+        record = next((known for known in reversed(self._records) if known.name == delivery.name), None)
+        is_another = stage not in ENDS and self._stages.get(delivery.name) in ENDS
+        if record is None or is_another:  # with --serve, missions of the same name may follow each other
+            self._stages.pop(delivery.name, None)
+            record = DeliveryRecord(
+                delivery.name, delivery.object_name, delivery.source, delivery.destination
+            )
+            self._records.append(record)
+        before = self._stages.get(delivery.name, DeliveryStage.WAITING).value
+        self._stages[delivery.name] = stage
+        record.state, record.attempts, record.reason = _stage_name(stage), attempts, reason
+        if stage.value <= DeliveryStage.DELIVERED.value:
+            stages = before, stage.value
+            record.pickup_error = self._error(PICK_UP, delivery.source, record.pickup_error, stages, truth)
+            record.dropoff_error = self._error(
+                SET_DOWN, delivery.destination, record.dropoff_error, stages, truth
+            )
+
+    def _error(
+        self,
+        action: _Action,
+        name: str,
+        known: Optional[float],
+        stages: Tuple[int, int],
+        truth: Optional[Pose2],
+    ) -> Optional[float]:
+        """Return the position error of an action: that on arrival until it is done, then that at its moment.
+
+        Args:
+            action: Picking up or setting down.
+            name: Place where it is done.
+            known: Error so far.
+            stages: Stage before and now.
+            truth: True pose of the robot now, if known.
+        """
+        before, stage = stages
+        has_arrived = before < action.during.value <= stage
+        if not has_arrived and not before < action.done.value <= stage:
+            return known
+        if truth is None or name not in self._places:
+            return None
+        error = self._places[name].distance_to(truth)
+        if has_arrived:
+            self._log(f"at {name}: truly {error:.3f} m from it")
+        elif error > ARRIVAL_TOLERANCE:
+            self._log(f"{action.text} at {name}: truly {error:.3f} m from it")
+        return error
+
+
+def _stage_name(stage: DeliveryStage) -> str:
+    return stage.name.lower().replace("_", " ")

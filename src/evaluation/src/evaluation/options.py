@@ -1,0 +1,225 @@
+"""Options shared by several commands, as frozen dataclasses to inherit from."""
+
+import argparse
+import math
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from typing import Any, Dict, Mapping, Optional, Tuple
+
+from supervision.command_line import number, option, seconds, seed
+
+ROOT = Path(__file__).resolve().parents[4]
+MAX_SPEED = 1000.0
+RUN_SECONDS = 900.0
+# Options that are written to result.json under their names.
+RESULT_OPTIONS = ("seed", "world", "robot", "map", "mission")
+
+
+def speed_factor(text: str) -> float:
+    speed = number(text)
+    if not 0.0 <= speed <= MAX_SPEED:
+        raise argparse.ArgumentTypeError(f"{text} is not between 0 and {MAX_SPEED:g}")
+    return speed
+
+
+@dataclass(frozen=True)
+class WorldOptions:
+    """World, robot and seed."""
+
+    world: Path = option(ROOT / "map/home.world", "SDF world", type=Path)
+    robot: str = option("turtlebot_lidar", "robot profile of sim_bridge", metavar="NAME")
+    seed: int = option(0, "seed of all noise and particles", type=seed)
+
+
+@dataclass(frozen=True)
+class HomeOptions(WorldOptions):
+    """A world with a map."""
+
+    map: Path = option(ROOT / "map/home.yaml", "map of that world", type=Path)
+
+    def files(self) -> Dict[str, Any]:
+        """Return the files as arguments of launch files."""
+        return {"map_file": self.map.resolve()}
+
+
+@dataclass(frozen=True)
+class DrivingOptions(HomeOptions):
+    """A home in which the robot navigates."""
+
+    planner: str = option(
+        "",
+        "local planner: official or my_package.my_module/MyPlanner (default: the robot's preset)",
+        metavar="NAME",
+    )
+
+    def files(self) -> Dict[str, Any]:
+        """Return the files and the planner as arguments of launch files.
+
+        Raises:
+            SettingsError: If there is no such planner.
+        """
+        if not self.planner:
+            return super().files()
+        from move_base_lite.control import check_local_planner  # late: slow to import
+
+        check_local_planner(self.planner)
+        return {**super().files(), "planner": self.planner}
+
+
+@dataclass(frozen=True)
+class ErrandOptions(HomeOptions):
+    """A home with zones."""
+
+    zones: Path = option(ROOT / "map/zones.yaml", "YAML of the zones", type=Path)
+
+    def files(self) -> Dict[str, Any]:
+        return {**super().files(), "zones_file": self.zones.resolve()}
+
+
+@dataclass(frozen=True)
+class MissionOptions(ErrandOptions, DrivingOptions):
+    """A home with a mission, or with the errand between the zones."""
+
+    mission: Optional[Path] = option(
+        None, "run the deliveries of this file instead (docs/reference/missions.md)", type=Path
+    )
+
+    def files(self) -> Dict[str, Any]:
+        mission = {} if self.mission is None else {"mission_file": self.mission.resolve()}
+        return {**super().files(), **mission}
+
+
+@dataclass(frozen=True)
+class LaunchPlan:
+    """A launch file and its arguments.
+
+    Attributes:
+        file: Name of the launch file.
+        arguments: Its arguments.
+        is_simulated: It starts a simulator.
+        bags: Profile of the topics to record; None: no bags.
+        respawned: Nodes that roslaunch restarts if they die.
+        package: Package of the launch file.
+    """
+
+    file: str
+    arguments: Mapping[str, object]
+    is_simulated: bool = True
+    bags: Optional[str] = None
+    respawned: Tuple[str, ...] = ()
+    package: str = "home_service"
+
+    def with_respawn(self, *nodes: str) -> "LaunchPlan":
+        """Return the plan with these nodes restarted if they die."""
+        return replace(self, arguments={**self.arguments, "respawn": "true"}, respawned=nodes)
+
+
+@dataclass(frozen=True)
+class RunOptions:
+    """A run of a graph, which writes a run folder."""
+
+    speed: Optional[float] = option(
+        None,
+        "1 real time, N times that, 0 as fast as the nodes keep up (default: 0, with --rviz or --web 1)",
+        type=speed_factor,
+    )
+    rviz: bool = option(False, "show it in rviz, if there is a display")
+    web: bool = option(
+        False,
+        "show it in the browser: prints the URL of the page (docs/how_to/watch_in_the_browser.md)",
+    )
+    web_port: Optional[str] = option(
+        None,
+        "address of that page (default: a free port of 127.0.0.1); implies --web",
+        metavar="[ADDRESS:]PORT",
+    )
+    timeout: Optional[float] = option(
+        None,
+        f"the run fails after N seconds of wall time (default: {RUN_SECONDS:g}; never for what Ctrl-C ends)",
+        type=seconds,
+    )
+    gif: bool = option(False, "also leave run.gif, the run as an animation")
+    output: Path = option(
+        Path("runs"), "folder in which the run folder is created", type=Path, metavar="FOLDER"
+    )
+
+    @property
+    def name(self) -> str:
+        """Name of the command, which is that of its module."""
+        return type(self).__module__.rpartition(".")[2]
+
+    @property
+    def is_interactive(self) -> bool:
+        """Whether Ctrl-C is the intended end of the run."""
+        return False
+
+    @property
+    def tool(self) -> Optional[str]:
+        """Tool of the cockpit that is open at first."""
+        return None
+
+    @property
+    def time_limit(self) -> float:
+        """Wall-clock time that the run may take [s]."""
+        if self.timeout is not None:
+            return self.timeout
+        return math.inf if self.is_interactive else RUN_SECONDS
+
+    @property
+    def effective_speed(self) -> float:
+        """Simulated seconds per wall-clock second; 0: as fast as the nodes keep up."""
+        return float(self.has_view) if self.speed is None else self.speed
+
+    @property
+    def has_view(self) -> bool:
+        """Whether the run is shown in rviz or in the browser."""
+        return self.rviz or self.shows_cockpit
+
+    @property
+    def shows_cockpit(self) -> bool:
+        """Whether the run is shown in the browser."""
+        return self.web or self.web_port is not None
+
+    def result_fields(self) -> Dict[str, Any]:
+        """Return the options that are written to result.json."""
+        given = {item.name: getattr(self, item.name) for item in fields(self) if item.name in RESULT_OPTIONS}
+        paths = {name: str(value) for name, value in given.items() if isinstance(value, Path)}
+        shown = {name: value for name, value in {**given, **paths}.items() if value is not None}
+        return {**shown, "speed": self.effective_speed}
+
+
+@dataclass(frozen=True)
+class GraphOptions(RunOptions, WorldOptions):
+    """A run in the simulated world."""
+
+    record: Optional[str] = option(
+        None,
+        "record bags: scans, odometry and ground truth, or everything (docs/how_to/record_and_replay.md)",
+        choices=("inputs", "all"),
+    )
+
+    def launch(self, file: str, **arguments: object) -> LaunchPlan:
+        """Return the plan for a launch file of home_service with this world, robot and seed."""
+        world = {"world_file": self.world.resolve(), "robot": self.robot, "seed": self.seed}
+        return LaunchPlan(file, {**world, **arguments}, bags=self.record)
+
+
+# Respawned nodes of a mapping run: they resume from a checkpoint.
+MAPPING_NODES, EXPLORING_NODES = ("slam_gmapping", "robot_state_publisher"), ("move_base", "explore")
+
+
+@dataclass(frozen=True)
+class MappingOptions(GraphOptions):
+    """A run that saves a map."""
+
+    save: Optional[Path] = option(
+        None, "write STEM.pgm and STEM.yaml (default: map in the run folder)", type=Path, metavar="STEM"
+    )
+
+    def mapping(self, explores: bool) -> LaunchPlan:
+        """Return the plan for SLAM, with exploration if ``explores``."""
+        if explores:
+            return self.launch("mapping.launch", autostart="true").with_respawn(
+                *MAPPING_NODES, *EXPLORING_NODES
+            )
+        return self.launch("slam.launch").with_respawn(*MAPPING_NODES)

@@ -1,0 +1,1 @@
+"""Observers of a run over ROS, and the run itself."""
