@@ -11,7 +11,6 @@ import pytest
 from planar import OccupancyGrid, PlanarError, Pose2
 from planar.config.parameters import parameter
 from planar.extensions import (
-    CallRules,
     ExtensionPoint,
     InvalidAnswer,
     Plugin,
@@ -58,8 +57,11 @@ CONTRACT: ExtensionPoint[Painter] = ExtensionPoint(
     "painter",
     Painter,
     "test_package.painters",
-    CallRules(PainterError, (OutOfPaint,), {"paint": _checked}, frozenset({"canvas"})),
-    PainterSettings,
+    PainterError,
+    passes=(OutOfPaint,),
+    answers={"paint": _checked},
+    writable=frozenset({"canvas"}),
+    settings=PainterSettings,
     parameter="painter",
 )
 
