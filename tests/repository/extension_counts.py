@@ -35,7 +35,7 @@ PROTOCOLS = re.compile(
     /control/local_planner\.py$ | /planning/global_planner\.py$
     | /recovery/behavior\.py$ | /costmap/layer\.py$
     | /(motion|sensor)/(own|custom)_model\.py$ | /matching/scan_matcher\.py$ | /faults/kind\.py$
-    | /worlds/(own|custom)\.py$ | /home_service/command\.py$
+    | /worlds/(own|custom)\.py$ | /(home_service|supervision)/command\.py$
     """,
     re.VERBOSE,
 )

@@ -214,9 +214,12 @@ class Guard:
         return self._point.failure(f"{self._name} {what}")
 
     def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):  # as copying and pickling ask for
+            raise AttributeError(name)
         method = getattr(self._point.protocol, name, None)
         if not inspect.isfunction(method):
-            return None if self._plugin is None else getattr(self._plugin, name, None)
+            is_optional = name in getattr(self._point.protocol, "__annotations__", ())
+            return getattr(self._plugin, name, None) if is_optional else getattr(self._plugin, name)
         call = partial(self.call, name, [*inspect.signature(method).parameters][1:])
         setattr(self, name, call)
         return call
