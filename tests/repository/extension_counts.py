@@ -6,8 +6,10 @@ python3 tests/repository/extension_counts.py [ROOT]
 
 import argparse
 import ast
+import io
 import re
 import sys
+import tokenize
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Collection, Dict, Iterator, List, Set, Tuple
@@ -49,35 +51,56 @@ class Counts:
     """What the mechanism costs.
 
     Attributes:
-        files: Its files with their numbers of lines.
+        files: Its files with their numbers of lines: all, and those of code, without docstrings, comments and
+            blank lines.
         guard_files: Files with guards.
         circles: Files that import each other, by circle.
     """
 
-    files: Dict[str, int]
+    files: Dict[str, Tuple[int, int]]
     guard_files: List[str]
     circles: List[List[str]]
 
     @property
-    def lines(self) -> int:
-        """Lines of the mechanism."""
-        return sum(self.files.values())
+    def lines(self) -> Tuple[int, int]:
+        """Lines of the mechanism: all, and those of code."""
+        every, code = zip(*self.files.values())
+        return sum(every), sum(code)
 
 
 def counts(root: Path) -> Counts:
     """Count in a checkout."""
-    files: Dict[str, int] = {}
+    files: Dict[str, Tuple[int, int]] = {}
     guard_files = []
     for path in (*modules(root), *root.glob("src/home_service/templates/*.py")):
         place, text = path.relative_to(root).as_posix(), path.read_text(encoding="utf-8")
         parts = [*_parts(ast.parse(text))] if PROTOCOLS.search(place) else []
         if MECHANISM.search(place):
-            files[place] = len(text.splitlines())
+            files[place] = len(text.splitlines()), len(_code_lines(text))
         elif parts:
-            files[place] = sum(last - first + 1 for _, first, last in parts)
+            lines = {line for _, first, last in parts for line in range(first, last + 1)}
+            files[place] = len(lines), len(lines & _code_lines(text))
         if place in files and any(GUARD.match(name) for name in _classes(ast.parse(text))):
             guard_files.append(place)
     return Counts(files, sorted(guard_files), circles(root))
+
+
+def _code_lines(text: str) -> Set[int]:
+    """Numbers of the lines with code."""
+    code: Set[int] = set()
+    layout = {
+        tokenize.COMMENT,
+        tokenize.NL,
+        tokenize.NEWLINE,
+        tokenize.INDENT,
+        tokenize.DEDENT,
+        tokenize.ENDMARKER,
+    }
+    for token in tokenize.generate_tokens(io.StringIO(text).readline):
+        is_docstring = token.type == tokenize.STRING and token.line.lstrip().startswith('"""')
+        if token.type not in layout and not is_docstring:
+            code.update(range(token.start[0], token.end[0] + 1))
+    return code
 
 
 def _classes(tree: ast.Module) -> Iterator[str]:
@@ -159,8 +182,8 @@ def main() -> int:
     parser.add_argument("root", nargs="?", type=Path, default=ROOT, help="a checkout (default: this)")
     found = counts(parser.parse_args().root)
     for place, lines in sorted(found.files.items()):
-        print(f"{lines:5d}  {place}")
-    print(f"{found.lines:5d}  lines in {len(found.files)} files of the mechanism")
+        print(f"{lines[0]:5d} {lines[1]:5d}  {place}")
+    print(f"{found.lines[0]:5d} {found.lines[1]:5d}  lines, and lines of code, in {len(found.files)} files")
     for title, rows in (("files with guards", found.guard_files), ("import circles", found.circles)):
         print(f"\n{title}: {len(rows)}")
         for row in rows:

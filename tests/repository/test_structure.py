@@ -5,6 +5,7 @@ import re
 from pathlib import Path
 from typing import Iterator, Tuple
 
+import extension_counts
 import pytest
 import structure
 
@@ -12,6 +13,7 @@ ROOT = structure.ROOT
 # From the lowest layer up; a package may import packages of lower layers only.
 LAYERS = (
     {"planar"},
+    {"rospy_transport"},
     {"supervision", "run_report"},
     {"planar_ros"},
     {"sim_bridge", "map_lite", "amcl_lite", "slam_lite", "move_base_lite", "explorer_lite"}
@@ -25,6 +27,8 @@ LAYERS = (
     {"home_service_gym"},
     {"home_service"},
 )
+# Lines of the mechanism of extension points, with all checks of contracts and templates.
+MOST_EXTENSION_LINES = 2400
 LAYER_OF = {package: number for number, layer in enumerate(LAYERS) for package in layer}
 
 
@@ -78,3 +82,13 @@ def test_classes_and_functions_stay_short(found, limit):
 def test_folders_stay_small():
     full = structure.folders(ROOT).items()
     assert [f"{folder}: {count}" for folder, count in full if count > structure.FULLEST_FOLDER] == []
+
+
+def test_no_files_import_each_other():
+    assert extension_counts.circles(ROOT) == []
+
+
+def test_one_file_guards_the_plugins_of_all_packages():
+    found = extension_counts.counts(ROOT)
+    assert found.guard_files == ["src/planar/src/planar/extensions/guard.py"]
+    assert found.lines[0] <= MOST_EXTENSION_LINES

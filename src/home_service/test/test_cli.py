@@ -8,13 +8,14 @@ from pathlib import Path
 
 import pytest
 
-from evaluation.options import ROOT, speed_factor
+from evaluation.options import ROOT
 from headless_mission.inputs import read_home
 from home_service import commands
 from home_service.cli import main
 from home_service.commands.test_navigation import goal_list
 from sim_bridge import ROBOTS
 from supervision.cli import parse
+from supervision.view_options import speed_factor
 
 
 def test_goals_are_read_from_a_line():

@@ -16,9 +16,10 @@ from move_base_lite.errors import (
     PluginFailed,
     StartBlocked,
 )
-from move_base_lite.navigator import Decision, Navigator, Status
+from move_base_lite.move_base import MoveBase, PoseHistory
+from move_base_lite.navigator import Decision, Navigator, NavigatorInputs, RobotState, Status
 from move_base_lite.parameters import load_settings, settings_from_parameters
-from move_base_lite.planning import GlobalPlanner, PlannerSettings
+from move_base_lite.planning import GlobalPlanner, PlannerSettings, PlanRequest
 from move_base_lite.recovery import RecoveryBehavior, RecoveryContext, RecoverySettings
 from planar.deprecation import deprecated_names
 
@@ -34,18 +35,23 @@ __all__ = [
     "LayerContext",
     "LayerSettings",
     "LocalPlanner",
+    "MoveBase",
     "NavigationError",
     "Navigator",
+    "NavigatorInputs",
     "NavigatorSettings",
     "NoPath",
     "OutOfMap",
     "Plan",
+    "PlanRequest",
     "PlannerSettings",
     "PlanningError",
     "PluginFailed",
+    "PoseHistory",
     "RecoveryBehavior",
     "RecoveryContext",
     "RecoverySettings",
+    "RobotState",
     "ControlContext",
     "StartBlocked",
     "Status",

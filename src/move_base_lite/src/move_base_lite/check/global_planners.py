@@ -51,7 +51,7 @@ def raises_the_reason(plugin: Plugin[Any]) -> None:
 
 def _plan(plugin: Plugin[Any], room: CheckMap) -> np.ndarray:
     planner = plugin.make(plugin.settings())
-    return planner.plan(room.costmap.costs, room.costmap.window, room.start_xy, room.goal_xy)
+    return planner.plan(room.plan_request)
 
 
 CHECKS = (

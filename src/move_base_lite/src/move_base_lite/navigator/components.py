@@ -15,10 +15,10 @@ from move_base_lite.control import (
 from move_base_lite.costmap import Observation
 from move_base_lite.dynamic_obstacles import DynamicObstacleTracker
 from move_base_lite.navigator.costmaps import Costmaps
-from move_base_lite.navigator.goal_execution import RobotState
+from move_base_lite.navigator.inputs import RobotState
 from move_base_lite.navigator.motion_prediction import predict_motion
 from move_base_lite.navigator.zones import Zones
-from move_base_lite.planning import GLOBAL_PLANNERS
+from move_base_lite.planning import GLOBAL_PLANNERS, PlanRequest
 from planar import OccupancyGrid, Pose2, Twist2
 
 
@@ -117,9 +117,8 @@ class NavigatorComponents:
         """
         costmap = self.costmaps.global_costmap
         start_xy: Tuple[float, float] = (start_in_map.x, start_in_map.y)
-        return self.planner.plan(
-            costmap.costs, costmap.window, start_xy, (goal_in_map.x, goal_in_map.y), tolerance
-        )
+        goal_xy = (goal_in_map.x, goal_in_map.y)
+        return self.planner.plan(PlanRequest(costmap.costs, costmap.window, start_xy, goal_xy, tolerance))
 
     def control_context(self, state: RobotState) -> ControlContext:
         """Predict the inputs of the local planner for the time at which its command takes effect.

@@ -8,8 +8,10 @@ To add one: a module with settings (a subclass of PlannerSettings), a class and 
 ``planning/registry.py``. ``test/test_planner.py`` checks every member of the registry.
 """
 
+import inspect
+import warnings
 from dataclasses import dataclass
-from typing import Any, Optional, Protocol, Tuple
+from typing import Any, Iterable, Optional, Protocol, Tuple
 
 import numpy as np
 
@@ -61,6 +63,26 @@ class Potential:
     at_goal: float
 
 
+@dataclass(frozen=True, eq=False)
+class PlanRequest:
+    """What a global planner is asked for.
+
+    Attributes:
+        costs: (rows, cols), uint8, values as in ``costmap/costs.py``; read-only.
+        window: Position and resolution of the grid.
+        start_xy: Start in the window's frame [m]; the nearest free cell within 0.5 m may replace it.
+        goal_xy: Goal in the window's frame [m].
+        tolerance: Distance from a blocked goal within which the nearest free cell replaces it [m]; the
+            settings' ``default_tolerance`` if that is larger.
+    """
+
+    costs: np.ndarray
+    window: CostmapWindow
+    start_xy: Tuple[float, float]
+    goal_xy: Tuple[float, float]
+    tolerance: float = 0.0
+
+
 class GlobalPlanner(Protocol):
     """Plans paths; constructed as ``make(settings)``. The costmap is an argument of each call.
 
@@ -73,23 +95,11 @@ class GlobalPlanner(Protocol):
 
     def __init__(self, settings: Any): ...
 
-    def plan(
-        self,
-        costs: np.ndarray,
-        window: CostmapWindow,
-        start_xy: Tuple[float, float],
-        goal_xy: Tuple[float, float],
-        tolerance: float = 0.0,
-    ) -> np.ndarray:
+    def plan(self, request: PlanRequest) -> np.ndarray:
         """Plan a path that enters no cell with a cost of INSCRIBED or more, except to leave an obstacle.
 
         Args:
-            costs: (rows, cols), uint8, values as in ``costmap/costs.py``; must not be modified.
-            window: Position and resolution of the grid.
-            start_xy: Start in the window's frame [m]; the nearest free cell within 0.5 m may replace it.
-            goal_xy: Goal in the window's frame [m].
-            tolerance: Distance from a blocked goal within which the nearest free cell replaces it [m]; the
-                settings' ``default_tolerance`` if that is larger.
+            request: Costmap, start and goal.
 
         Returns:
             Path (N, 2), N > 1, from start to goal in small steps [m].
@@ -113,6 +123,22 @@ def _checked(path_xy: np.ndarray, *given: Any) -> np.ndarray:
     return path_xy
 
 
+def _requirements(found: Any) -> Iterable[str]:
+    """Let planners from before there were requests take one; they have five arguments."""
+    plan = getattr(found, "plan", None)
+    try:
+        inspect.signature(plan).bind("self", "costs", "window", "start_xy", "goal_xy")  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        return ()
+    warnings.warn(
+        f"{found.__module__}.{found.__name__}.plan(costs, window, ...) is deprecated; take a PlanRequest",
+        DeprecationWarning,
+        stacklevel=2,
+    )
+    found.plan = lambda self, request: plan(self, *vars(request).values())  # type: ignore[misc]
+    return ()
+
+
 CONTRACT: ExtensionPoint[GlobalPlanner] = ExtensionPoint(
     "global planner",
     GlobalPlanner,
@@ -125,5 +151,6 @@ CONTRACT: ExtensionPoint[GlobalPlanner] = ExtensionPoint(
         is_lazy=True,
     ),
     PlannerSettings,
+    _requirements,
     parameter="base_global_planner",
 )

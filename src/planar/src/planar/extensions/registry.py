@@ -107,19 +107,25 @@ class Registry(Generic[T]):
             settings: Settings of the plugin; their type selects the plugin.
             given: Further arguments, as the contract states.
         """
-        known = (*self.members, *self._loaded.values())
-        member = next(each for each in known if each.settings is type(settings))
+        member = next(each for each in self._known if each.settings is type(settings))
         return member.make(settings, *given)
+
+    @property
+    def _known(self) -> Tuple[Plugin[T], ...]:
+        return (*self.members, *self._loaded.values())
 
     def _load(self, name: str) -> Optional[Plugin[T]]:
         found = self.point.load(name)
         if found is not None:
-            self._loaded[name] = Plugin(
-                name,
-                self.point.settings_of(found),
-                lambda *given: self.point.guarded(name, partial(found, *given)),
-            )
+            settings = self.point.settings_of(found)
+            if any(each.settings is settings for each in self._known):  # the type selects the plugin
+                settings = type(settings.__name__, (settings,), {"__doc__": settings.__doc__})
+            make = partial(self._guarded, name, found)
+            self._loaded[name] = Plugin(name, settings, make)
         return self._loaded.get(name)
+
+    def _guarded(self, name: str, found: type, *given: Any) -> T:
+        return self.point.guarded(name, partial(found, *given))
 
 
 _selected: Dict[Tuple[str, str], Registry[Any]] = {}
