@@ -35,7 +35,7 @@ require_runs() {
 }
 
 takes_output() { # COMMAND
-    sed '/^$/q' "$root/scripts/$1.sh" | grep -q -- '--output FOLDER'
+    "$root/scripts/$1.sh" --help | grep -q -- '--output FOLDER'
 }
 
 [[ $# -gt 0 && $1 != -* ]] || set -- home_service "$@"

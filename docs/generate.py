@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Write what follows from the code: src/*/config/*.yaml, and the generated parts of the pages in docs/.
+"""Write what follows from the code and from tables.
+
+These are src/*/config/*.yaml, scripts/usage, packages in src/compat and generated parts of pages in docs/.
 
 A page has two kinds of generated parts: the source behind a comment that names a module, and the table or
 text between ``<!-- generated: NAME -->`` and ``<!-- end -->``. With --check, only name the stale files.
@@ -10,19 +12,24 @@ import ast
 import importlib
 import re
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Callable, Dict, Iterator, List, Tuple
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(path) for path in ROOT.glob("src/*/src")]
+PLACES = ("src/*/src", "src/compat/*/src", "tests/fuzz", "tests/runner")
+sys.path[:0] = [str(path) for place in PLACES for path in ROOT.glob(place)]
+
+from alias_packages import alias_packages  # noqa: E402
 
 from planar.config.config_file import Section, render_yaml  # noqa: E402
+from supervision.command_line import usage  # noqa: E402
 
 MADE_BY = "Made by docs/generate.py; do not edit."
 # A comment that names a module, on a separate line, and the listing behind it, once there is one.
 LISTING = re.compile(r"^<!-- (\S+\.py) -->\n(?:\n```python\n.*?^```\n)?", re.MULTILINE | re.DOTALL)
 GENERATED = re.compile(r"^<!-- generated: (\w+) -->\n.*?^<!-- end -->$", re.MULTILINE | re.DOTALL)
-USAGE = re.compile(r"^# (Usage: .*?)^(?!#)", re.MULTILINE | re.DOTALL)
+USAGE = re.compile(r"^(# Usage: .*?)^(?!#)", re.MULTILINE | re.DOTALL)
 
 
 def main() -> int:
@@ -36,9 +43,17 @@ def main() -> int:
         if options.check:
             print(f"{name} is stale: run docs/generate.py", file=sys.stderr)
         else:
-            path.write_text(text, encoding="utf-8")
+            write(path, text)
             print(f"{name} written")
     return 1 if options.check and stale else 0
+
+
+def write(path: Path, text: str) -> None:
+    """Write a file; one that starts with ``#!`` becomes executable."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text, encoding="utf-8")
+    if text.startswith("#!"):
+        path.chmod(0o755)
 
 
 def is_written(path: Path, text: str) -> bool:
@@ -50,7 +65,29 @@ def files() -> Dict[Path, str]:
     """Return every generated or partly generated file with its text."""
     configs = {path: f"# {MADE_BY}\n{render_yaml(section)}" for path, section in declared_files().items()}
     pages = {path: with_generated(path.read_text("utf-8")) for path in ROOT.glob("docs/**/*.md")}
-    return {**configs, **pages}
+    version = re.search("<version>(.*)</version>", (ROOT / "src/planar/package.xml").read_text("utf-8"))
+    aliases = alias_packages(ROOT / "src/compat", version[1])
+    return {**configs, **usages(), **aliases, **pages}
+
+
+def usages() -> Dict[Path, str]:
+    """Return the usage of each script whose options are a dataclass."""
+    kinds = dict(commands())
+    return {
+        ROOT / f"scripts/usage/{name}.txt": usage(kind, f"./scripts/{name}.sh")
+        for name, kind in kinds.items()
+    }
+
+
+def commands() -> Iterator[Tuple[str, type]]:
+    """Yield name and options of each script whose options are a dataclass."""
+    for path in sorted(ROOT.glob("src/*/src/*/commands")):
+        if path.parent.name != "home_service_gym" or find_spec("gymnasium"):
+            folder = importlib.import_module(f"{path.parent.name}.commands").FOLDER
+            yield from ((name, folder.find(name)) for name in folder.names())
+    yield "run_project", importlib.import_module("run_project.options").ProjectOptions
+    yield "fuzz", importlib.import_module("hunt").Fuzz
+    yield "test", importlib.import_module("run_tests").Test
 
 
 def with_generated(page: str) -> str:
@@ -67,14 +104,15 @@ def code_of(name: str) -> str:
 
 
 def scripts() -> str:
-    """Return a section for each script: its usage."""
+    """Return a section for each script: its usage, generated or from its head comment."""
+    generated = {path.stem: path.read_text("utf-8") for path in ROOT.glob("scripts/usage/*.txt")}
+    generated.update({path.stem: text for path, text in usages().items()})
     sections: List[str] = []
     for path in sorted(ROOT.glob("scripts/*.sh")):
-        usage = USAGE.search(path.read_text("utf-8"))
-        if usage:
-            lines = [line[2:] for line in f"# {usage[1]}".splitlines() if not line.startswith("# shellcheck")]
-            text = "\n".join(lines).strip()
-            sections.append(f"## {path.name}\n\n```text\n{text}\n```\n")
+        comment = USAGE.search(path.read_text("utf-8"))
+        text = generated.get(path.stem) or (comment and re.sub("^# ?", "", comment[1], flags=re.MULTILINE))
+        if text:
+            sections.append(f"## {path.name}\n\n```text\n{text.strip()}\n```\n")
     return "\n".join(sections)
 
 

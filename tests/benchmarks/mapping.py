@@ -105,9 +105,8 @@ class MappingRun(EpisodeHooks):
 
     def after_step(self, episode: Episode, step: StepResult) -> None:
         self.collisions += len(step.contacts)
-        scan = step.scan
-        if scan is not None:
-            self._new_grid = self._map(step, scan) or self._new_grid
+        if step.scan is not None:
+            self._new_grid = self._map(step, step.scan) or self._new_grid
 
     def at_tick(self, episode: Episode, step: StepResult) -> None:
         """Advance the exploration by the outcome of the last tick; its hooks precede those of navigation."""

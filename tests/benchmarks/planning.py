@@ -19,7 +19,7 @@ from scipy.ndimage import label
 
 from move_base_lite import settings_from_parameters
 from move_base_lite.costmap import LayeredCostmap
-from move_base_lite.planning import Navfn, NavfnSettings
+from move_base_lite.planning import Navfn, NavfnSettings, PlanRequest
 from planar import OccupancyGrid, load_map
 
 # A TurtleBot's costmap.
@@ -76,7 +76,7 @@ def _measure(costmap: LayeredCostmap, pairs: np.ndarray, settings: NavfnSettings
             for col, row in ends.reshape(2, 2)
         )
         began = time.thread_time()
-        path_xy = planner.plan(costmap.costs, window, start_xy, goal_xy)
+        path_xy = planner.plan(PlanRequest(costmap.costs, window, start_xy, goal_xy))
         if number:  # the first compiles
             times.append(1e3 * (time.thread_time() - began))
             lengths.append(np.linalg.norm(np.diff(path_xy, axis=0), axis=1).sum() / window.resolution)

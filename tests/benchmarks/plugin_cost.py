@@ -21,10 +21,9 @@ import numpy as np
 from headless_mission.localization import LocalizationHooks
 from headless_mission.navigation import NavigationHooks
 from move_base_lite import Navigator, NavigatorSettings, load_settings
-from move_base_lite.control.registry import GuardedLocalPlanner
 from move_base_lite.warmup import warm_up
 from planar import Pose2, load_map
-from planar.plugins import load_object
+from planar.extensions import Guard, load_object
 from sim_bridge import Episode, Simulation, load_world
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -73,7 +72,7 @@ def measure(name: str) -> Measurement:
     warm_up(settings)
     kind, call_times = load_object(name), CallTimes()
     with patch.object(kind, "follow", call_times.timed("planner", kind.follow)), patch.object(
-        GuardedLocalPlanner, "follow", call_times.timed("guarded", GuardedLocalPlanner.follow)
+        Guard, "call", call_times.timed("guarded", Guard.call)
     ), patch.object(Navigator, "tick", call_times.timed("tick", Navigator.tick)):
         drive(settings)
     guarded, planner = (np.array(call_times.ms[what]) for what in ("guarded", "planner"))

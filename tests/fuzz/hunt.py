@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 """Feeds thousands of broken files to each file reader and stores those not rejected with a PlanarError."""
 
-import argparse
 import hashlib
 import json
 import os
@@ -14,7 +13,7 @@ import time
 from dataclasses import dataclass, field
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Dict, List, Optional
+from typing import Dict, List, Optional, Tuple
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = Path(__file__).resolve().parent
@@ -23,6 +22,9 @@ sys.path[:0] = [str(FOLDER), *(str(path) for path in sorted(ROOT.glob("src/**/sr
 from readers import READERS, Reader, prepare  # noqa: E402
 from trial import SECONDS  # noqa: E402
 
+from supervision.command_line import count, option, parse, seconds  # noqa: E402  # noqa: E402
+from supervision.display import print_error  # noqa: E402
+
 # A reader that does not react to its time limit is killed after this time [s].
 UNRESPONSIVE_SECONDS = 12.0 * SECONDS
 # Time limit for imports and for reading the corpus [s].
@@ -30,6 +32,30 @@ START_SECONDS = 300.0
 # Period of progress output [s].
 LOG_SECONDS = 15.0
 MANY = 1_000_000_000
+
+
+@dataclass(frozen=True)
+class Fuzz:
+    """Give every reader of files thousands of malformed ones.
+
+    Stores those that it does not refuse with an error message within 5 s and 1 GB (docs/how_to/fuzz.md).
+
+    Exit code: 0 nothing found, 1 failures found, 2 invalid input, 130 interrupted.
+    """
+
+    minutes: float = option(5.0, "for all readers together", type=seconds)
+    cases: Optional[int] = option(
+        None, "maximum number of files for each reader (default: unlimited)", type=count
+    )
+    reader: Optional[Tuple[str, ...]] = option(
+        None,
+        "only these, such as world or map_image (default: all)",
+        nargs="+",
+        choices=tuple(READERS),
+        metavar="NAME",
+    )
+    seed: int = option(0, "seed", type=int)
+    output: Path = option(ROOT / "build/fuzz", "folder of results", type=Path, metavar="FOLDER")
 
 
 @dataclass
@@ -43,11 +69,11 @@ class Hunt:
 class Hunter:
     """Runs a process that reads broken files, and restarts it after a crash."""
 
-    def __init__(self, reader: Reader, folder: Path, output: Path, options: argparse.Namespace):
+    def __init__(self, reader: Reader, folder: Path, output: Path, options: Fuzz):
         self._reader, self._case = reader, folder / reader.file_name
         self._findings, self._corpus = output / reader.name, output / "corpus" / reader.name
         self._seed, self._cases = options.seed, options.cases or MANY
-        self._ending = time.monotonic() + 60.0 * options.minutes / len(options.reader)
+        self._ending = time.monotonic() + 60.0 * options.minutes / len(options.reader or READERS)
         self._found = Hunt()
         self._news = b""
 
@@ -147,21 +173,12 @@ def _memory_folder() -> Optional[str]:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(prog="fuzz.sh", description=__doc__)
-    parser.add_argument("--minutes", type=float, default=5.0, help="for all readers together (default: 5)")
-    parser.add_argument("--cases", type=int, help="most files for each reader (default: no limit)")
-    parser.add_argument("--reader", nargs="+", choices=READERS, default=list(READERS), metavar="NAME")
-    parser.add_argument("--seed", type=int, default=0, help="random seed (default: 0)")
-    parser.add_argument("--output", type=Path, default=ROOT / "build/fuzz", help="folder for findings")
-    options = parser.parse_args()
-    if not options.minutes > 0.0:
-        parser.error("--minutes must be positive")
-    if options.cases is not None and options.cases < 1:
-        parser.error("--cases must be positive")
+    options = parse(Fuzz, sys.argv[1:], "fuzz.sh")
     if not find_spec("atheris"):
-        parser.error("Atheris is not installed; run ./scripts/setup.sh --dev (x86_64 only)")
+        print_error("Atheris is not installed; run ./scripts/setup.sh --dev (x86_64 only)")
+        return 2
     faults = cases = 0
-    for name in options.reader:
+    for name in options.reader or READERS:
         with tempfile.TemporaryDirectory(dir=_memory_folder()) as folder:
             prepare(Path(folder))
             found = Hunter(READERS[name], Path(folder), options.output, options).hunt()

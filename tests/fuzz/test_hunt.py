@@ -28,4 +28,4 @@ def test_limits_that_are_not_positive_are_rejected(tmp_path):
             check=False,
         )
         assert done.returncode == 2
-        assert f"{option} must be positive" in done.stderr
+        assert f"argument {option}: " in done.stderr

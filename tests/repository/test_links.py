@@ -28,7 +28,7 @@ def test_every_script_of_the_readme_has_a_help_text():
         set(re.findall(r"\./scripts/\w+\.sh", (ROOT / "README.md").read_text(encoding="utf-8")))
     ):
         usage = subprocess.run([ROOT / script, "--help"], check=True, capture_output=True, text=True).stdout
-        assert usage.startswith("Usage: "), script
+        assert usage.startswith(("Usage: ", "usage: ")), script
 
 
 def test_every_page_that_is_mentioned_in_the_tree_exists():

@@ -1,36 +1,40 @@
-"""The usage texts of the scripts list the options of their commands."""
+"""The scripts run the commands of the packages, and print their usage on a machine without a set-up."""
 
 import re
+import shutil
 import subprocess
-from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
 
-from home_service import commands
-from laboratory.commands import FOLDER as EXPERIMENTS
-from supervision.cli import parse
-
 SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
-FOLDERS = {"": commands.FOLDER, "experiments": EXPERIMENTS}
-if find_spec("gymnasium"):
-    from home_service_gym.commands import FOLDER as ENVIRONMENTS
-
-    FOLDERS["environments"] = ENVIRONMENTS
-OPTION = re.compile(r"--[a-z][a-z-]*")
-
-
-@pytest.mark.parametrize(
-    ("folder", "command"),
-    [(folder, name) for folder in FOLDERS.values() for name in sorted(folder.names())],
+COMMANDS = sorted(
+    path for path in SCRIPTS.parent.glob("src/*/src/*/commands/*.py") if path.name != "__init__.py"
 )
-def test_a_script_lists_the_options_of_its_command(folder, command, capsys):
-    with pytest.raises(SystemExit):
-        parse([command, "--help"], folder)
-    usage = subprocess.run(
-        [SCRIPTS / f"{command}.sh", "--help"], check=True, capture_output=True, text=True
-    ).stdout
-    assert set(OPTION.findall(usage)) == set(OPTION.findall(capsys.readouterr().out))
+
+
+@pytest.mark.parametrize("command", COMMANDS, ids=lambda path: path.stem)
+def test_every_command_has_a_script_that_runs_it_from_its_package(command):
+    text = (SCRIPTS / f"{command.stem}.sh").read_text()
+    assert text.endswith(f'run_command {command.parents[1].name} {command.stem} "$@"\n')
+
+
+@pytest.mark.parametrize("script", sorted(SCRIPTS.glob("*.sh")), ids=lambda path: path.stem)
+def test_a_script_prints_its_usage_without_packages_and_python(script, tmp_path):
+    if script.stem in ("lib", "shell"):
+        pytest.skip("is sourced")
+    shutil.copytree(SCRIPTS, tmp_path / "scripts")
+    programs = tmp_path / "programs"
+    programs.mkdir()
+    (programs / "python3").write_text("#!/bin/sh\nexit 1\n")
+    (programs / "python3").chmod(0o755)
+    environment = {"PATH": f"{programs}:/usr/bin:/bin"}
+    copy = tmp_path / "scripts" / script.name
+    result = subprocess.run([copy, "--help"], capture_output=True, text=True, env=environment)
+    assert result.returncode == 0, result.stderr
+    assert result.stdout.lower().startswith(f"usage: ./scripts/{script.name}")
+    assert "--help" in result.stdout
+    assert sorted(tmp_path.iterdir()) == [programs, tmp_path / "scripts"]
 
 
 def test_a_script_that_cannot_write_temporary_files_fails_with_one_line(tmp_path):
@@ -48,9 +52,3 @@ def test_the_set_up_refuses_an_option_that_it_does_not_know():
     result = subprocess.run([SCRIPTS / "setup.sh", "--nonsense"], capture_output=True, text=True)
     assert result.returncode == 2
     assert "--nonsense" in result.stderr
-
-
-@pytest.mark.parametrize(("kind", "folder"), list(FOLDERS.items())[1:])
-def test_a_script_of_another_package_is_registered(kind, folder):
-    listed = re.search(rf"{kind}=\((.*?)\)", (SCRIPTS / "lib.sh").read_text())
-    assert listed and sorted(listed[1].split()) == sorted(folder.names())

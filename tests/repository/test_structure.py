@@ -1,9 +1,11 @@
 """Imports respect the layers, and folders, classes and functions stay small."""
 
 import ast
+import re
 from pathlib import Path
 from typing import Iterator, Tuple
 
+import extension_counts
 import pytest
 import structure
 
@@ -11,6 +13,7 @@ ROOT = structure.ROOT
 # From the lowest layer up; a package may import packages of lower layers only.
 LAYERS = (
     {"planar"},
+    {"rospy_transport"},
     {"supervision", "run_report"},
     {"planar_ros"},
     {"sim_bridge", "map_lite", "amcl_lite", "slam_lite", "move_base_lite", "explorer_lite"}
@@ -24,6 +27,8 @@ LAYERS = (
     {"home_service_gym"},
     {"home_service"},
 )
+# Lines of the mechanism of extension points, with all checks of contracts and templates.
+MOST_EXTENSION_LINES = 2400
 LAYER_OF = {package: number for number, layer in enumerate(LAYERS) for package in layer}
 
 
@@ -59,6 +64,12 @@ def test_packages_import_lower_layers_only():
     assert upward == []
 
 
+def test_yaml_is_parsed_with_bounds():
+    unbounded = re.compile(r"yaml\.(safe_|full_|unsafe_)?load(_all)?\(|yaml\.compose\(")
+    modules = [path for path in structure.modules(ROOT) if unbounded.search(path.read_text(encoding="utf-8"))]
+    assert modules == [], "use planar.config.bounded_yaml.load_yaml"
+
+
 @pytest.mark.parametrize(
     ("found", "limit"),
     zip(structure.pieces(ROOT), (structure.LONGEST_CLASS, structure.LONGEST_FUNCTION)),
@@ -71,3 +82,13 @@ def test_classes_and_functions_stay_short(found, limit):
 def test_folders_stay_small():
     full = structure.folders(ROOT).items()
     assert [f"{folder}: {count}" for folder, count in full if count > structure.FULLEST_FOLDER] == []
+
+
+def test_no_files_import_each_other():
+    assert extension_counts.circles(ROOT) == []
+
+
+def test_one_file_guards_the_plugins_of_all_packages():
+    found = extension_counts.counts(ROOT)
+    assert found.guard_files == ["src/planar/src/planar/extensions/point.py"]
+    assert found.lines[0] <= MOST_EXTENSION_LINES

@@ -45,14 +45,15 @@ def examples() -> List[Example]:
 @pytest.fixture
 def tree(tmp_path):
     """A copy of the folders that examples change, with the compiled kernels."""
-    for name in ("src", "map", "docs", "scripts"):
+    for name in ("src", "map", "docs", "scripts", "tests/fuzz", "tests/runner"):
         shutil.copytree(ROOT / name, tmp_path / name, symlinks=True)
     return tmp_path
 
 
-def test_the_page_has_examples_of_a_planner_a_check_a_sensor_a_command_and_a_result():
+def test_the_page_has_examples_of_a_planner_a_check_an_extension_point_a_sensor_a_command_and_a_result():
     names = " ".join(example.name for example in examples())
-    assert all(word in names for word in ("planner", "check", "sensor", "command", "result.json")), names
+    needed = ("planner", "check", "extension point", "sensor", "command", "result.json")
+    assert all(word in names for word in needed), names
 
 
 @pytest.mark.parametrize("example", examples(), ids=lambda example: example.name)

@@ -82,8 +82,13 @@ class GoesFar(Exact):
 
 class LosesSome(Exact):
     def moved(self, poses, base_before, base_now, rng):
-        poses[:] = 0.0
         return poses[:-1]
+
+
+class MovesInPlace(Exact):
+    def moved(self, poses, base_before, base_now, rng):
+        poses[:] = 0.0
+        return poses
 
 
 class DoesNotMove:
@@ -127,6 +132,7 @@ def test_it_takes_the_place_of_the_others():
         (AnswersNan, "returned no 200 finite numbers"),
         (AnswersLess, "returned no 200 finite numbers"),
         (CannotBeMade, "raised OSError: no weights.npz"),
+        (Scribbles, "raised ValueError: assignment destination is read-only"),
     ],
 )
 def test_an_error_of_a_sensor_model_names_it(kind, fault):
@@ -136,8 +142,13 @@ def test_an_error_of_a_sensor_model_names_it(kind, fault):
 
 
 def test_it_cannot_move_the_particles():
-    localizer, _ = updated(Scribbles)
-    assert np.abs(localizer.particles.poses[:, :2] - 1.0).max() < 0.6
+    settings = LocalizerSettings(sensor_plugin=named(Scribbles), max_particles=200)
+    localizer = Localizer(GRID, settings, np.random.default_rng(0))
+    localizer.set_pose(Pose2(1.0, 1.0), np.diag([0.01, 0.01, 0.01]))
+    before = localizer.particles.poses.copy()
+    with pytest.raises(LocalizationError):
+        localizer.update(Pose2(), SCAN)
+    assert np.array_equal(localizer.particles.poses, before)
 
 
 def standing(kind):
@@ -161,6 +172,7 @@ def test_a_motion_model_takes_the_place_of_the_others():
         (StopsOnce, "raised ValueError: not now"),
         (GoesFar, "returned no 200 by 3 finite numbers up to 1e+06"),
         (LosesSome, "returned no 200 by 3 finite numbers"),
+        (MovesInPlace, "raised ValueError: assignment destination is read-only"),
     ],
 )
 def test_an_error_of_a_motion_model_names_it(kind, fault, monkeypatch):

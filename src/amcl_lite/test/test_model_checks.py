@@ -9,7 +9,7 @@ import pytest
 from amcl_lite import LocalizerSettings
 from amcl_lite.check import CHECK_SUITES, MOTION_CHECKS, SENSOR_CHECKS
 from amcl_lite.config import MOTION_MODELS, SENSOR_MODELS
-from planar.plugin_check import run_checks
+from planar.extensions.check import run_checks
 
 
 class Indifferent:

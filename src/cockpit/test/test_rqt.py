@@ -1,6 +1,9 @@
 """The names of rqt's programs."""
 
+from pathlib import Path
+
 import pytest
+import yaml
 
 from cockpit.ros.rqt import TOOLS, chosen
 from cockpit.ros.tools import names
@@ -9,6 +12,11 @@ from planar import PlanarError
 
 def test_every_name_has_a_tool():
     assert set(TOOLS.values()) <= set(names())
+
+
+def test_every_program_of_a_tool_has_a_package():
+    table = yaml.safe_load((Path(__file__).parents[2] / "compat/packages.yaml").read_text())
+    assert set(table["tools"]) == set(TOOLS)
 
 
 @pytest.mark.parametrize(

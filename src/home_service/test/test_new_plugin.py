@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from home_service.commands.new_plugin import KINDS, TEMPLATES, NewPlugin
+from home_service.commands.new_plugin import KINDS, NewPlugin
 from planar import SettingsError
 
 
@@ -32,8 +32,14 @@ def test_tests_of_plugins_that_were_generated_before_find_their_checks(package):
         assert checks.KITS is checks.CHECK_SUITES
 
 
-def test_every_kind_of_plugin_has_a_template():
-    assert sorted(KINDS) == sorted(path.stem for path in TEMPLATES.glob("*.py"))
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_generated_plugin_has_its_own_names(kind, tmp_path):
+    NewPlugin("mine", kind, tmp_path).run()
+    code = (tmp_path / f"mine/src/mine/{kind}.py").read_text()
+    assert "class Mine" in code
+    assert not any(
+        name in code for name in ("CLASS", "TITLE", KINDS[kind].example.rpartition("/")[2] or "CLASS")
+    )
 
 
 @pytest.mark.parametrize("name", ["My Planner", "2fast", "planner-1"])

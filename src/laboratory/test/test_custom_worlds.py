@@ -101,7 +101,7 @@ def test_its_fields_and_its_source_are_part_of_the_digest(read):
             "{wdith: 3.0}",
             ':2: unknown key "world.custom.world/Corridor.wdith" (did you mean "width"?)',
         ),
-        (NotFrozen, "{}", "is not a world generator: it is not a frozen dataclass"),
+        (NotFrozen, "{}", "is no world generator: it is not a frozen dataclass"),
         (WithoutArena, "{}", "is no world generator: it has no arena(seed)"),
         (
             "Nowhere",

@@ -14,8 +14,8 @@ from laboratory.generators.homes import Homes
 from laboratory.worlds.solids import FLOOR, wall
 from laboratory.worlds.source import Arena
 from planar import OccupancyGrid, Pose2
+from planar.extensions.check import run_checks
 from planar.maps.places import NamedPlace
-from planar.plugin_check import run_checks
 from sim_bridge.world import World
 
 

@@ -16,10 +16,9 @@ from move_base_lite.costmap import (
     LayerSettings,
     observation_from_points,
 )
-from move_base_lite.costmap.registry import GuardedLayer
-from move_base_lite.plugin import Plugin, Registry
 from planar import Pose2
 from planar.config.parameters import parameter
+from planar.extensions import Plugin, Registry
 
 
 @pytest.mark.parametrize("check", CHECK_SUITES["costmap_layer"].checks, ids=lambda check: check.__name__)
@@ -45,7 +44,7 @@ class LineLayer(Layer):
 
 def test_a_user_defined_layer_is_inflated(monkeypatch):
     line = Plugin("mine::LineLayer", LineSettings, LineLayer)
-    layers = Registry(*LAYERS.members, line, contract=LAYERS.contract, guarded=GuardedLayer)
+    layers = Registry(LAYERS.point, *LAYERS.members, line)
     monkeypatch.setattr("move_base_lite.costmap.costmap.LAYERS", layers)
     costmap = LayeredCostmap(CostmapSettings(width=1.0, height=1.0, plugin_layers=(LineSettings(col=4),)))
     assert (costmap.costs[:, 4] == LETHAL).all()
@@ -68,7 +67,7 @@ def layer_written_before_the_rename(*bases):
 def test_a_layer_that_names_its_method_note_still_works(bases):
     with pytest.warns(DeprecationWarning, match="OldLayer.note is deprecated; name it add_observation"):
         kind = layer_written_before_the_rename(*bases)
-        assert LAYERS.contract.violations(kind) == []
+        assert LAYERS.point.violations(kind) == []
     layer = kind(None, None)
     layer.add_observation(observation_from_points("cloud", 0.0, Pose2(), np.empty((0, 3))), Pose2())
     assert layer.topics == ["cloud"]

@@ -95,6 +95,30 @@ def test_a_planner_with_the_old_argument_names_keeps_the_contract(monkeypatch):
     assert trajectory.command == Twist2(0.1, 0.0)
 
 
+class OldGlobalPlanner:
+    """Written for version 1.0, when a global planner got five arguments."""
+
+    potential = None
+
+    def __init__(self, settings):
+        pass
+
+    def plan(self, costs, window, start_xy, goal_xy, tolerance=0.0):
+        assert costs.shape == (window.rows, window.cols) and tolerance == 0.5
+        return np.array([start_xy, goal_xy])
+
+
+def test_a_global_planner_with_five_arguments_is_given_a_request(monkeypatch):
+    module = types.ModuleType("old.planners")
+    module.OldGlobalPlanner = OldGlobalPlanner
+    monkeypatch.setitem(sys.modules, "old.planners", module)
+    with pytest.warns(DeprecationWarning, match=r"OldGlobalPlanner.plan\(costs, window, ...\) is deprecated"):
+        plugin = CHECK_SUITES["global_planner"].find("old.planners/OldGlobalPlanner")
+    request = replace(maps.check_map("open").plan_request, tolerance=0.5)
+    path_xy = plugin.make(plugin.settings()).plan(request)
+    assert path_xy.tolist() == [list(request.start_xy), list(request.goal_xy)]
+
+
 def test_old_parameters_are_accepted_with_one_warning_each():
     old = {"mover_range": 9.0, "watch_what_appears": True, "heed_global_costmap": True, "mover_distance": 1.0}
     parameters = {"base_local_planner": "move_base_lite/MppiPlannerROS", "MppiPlannerROS": old}

@@ -1,7 +1,7 @@
 import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from planar_ros.bags.offline_replay import run_replay
+from planar_ros.bags.offline_replay import ReplayOptions, run_replay
 from planar_ros.node.entry import use_one_blas_thread
 
 
@@ -21,10 +21,6 @@ def test_blas_is_limited_to_one_thread():
 
 
 def test_a_replay_uses_one_blas_thread():
-    class Parser:
-        def parse_args(self, arguments):
-            return arguments
-
     counts = []
-    assert run_replay(Parser(), lambda arguments: counts.append(threads()) or 0, []) == 0
+    assert run_replay(ReplayOptions, "replay", lambda options: counts.append(threads()) or 0, ["bag"]) == 0
     assert counts == [{1}]

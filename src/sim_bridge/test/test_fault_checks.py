@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from planar import Pose2
-from planar.plugin_check import run_checks
+from planar.extensions.check import run_checks
 from sim_bridge.check import CHECK_SUITES, CHECKS
 from sim_bridge.faults import KINDS
 from sim_bridge.faults.kind import FaultKind

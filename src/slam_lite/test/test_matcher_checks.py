@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from planar import Pose2
-from planar.plugin_check import run_checks
+from planar.extensions.check import run_checks
 from slam_lite.check import CHECK_SUITES, CHECKS
 from slam_lite.config import MapperSettings
 from slam_lite.matching.local_map import Match

@@ -4,21 +4,32 @@ from typing import Optional, Tuple
 
 import pytest
 
-from supervision.command_line import argument, option, parse
+from supervision.command_line import ROOT, argument, option, parse, usage
 
 
 @dataclass(frozen=True)
 class Wash:
     """Washes the dishes.
 
-    Not shown by --help.
+    They are dried as well.
+
+    Attributes:
+        known: Not an option.
     """
 
     dishes: Tuple[Path, ...] = argument("what to wash", type=Path, nargs="+", metavar="DISH")
     hot: bool = option(False, "with hot water")
     dry_with: Optional[str] = option(None, "a cloth", choices=("red", "blue"))
-    seconds: float = option(5.0, "for each", type=float)
+    seconds: float = option(5.0, "for each, 5 % more if needed", type=float)
+    rack: Path = option(ROOT / "src/rack", "where to", type=Path)
     known: int = 7
+
+
+@dataclass(frozen=True)
+class WashTwice(Wash):
+    """Washes the dishes twice."""
+
+    twice: bool = option(False, "again")
 
 
 def test_fields_are_options_with_their_defaults():
@@ -42,11 +53,52 @@ def test_an_unknown_option_ends_the_process_with_the_name_of_the_script(capsys):
     assert "wash.sh: error: unrecognized arguments: --known 8" in capsys.readouterr().err
 
 
-def test_help_shows_the_first_line_and_the_defaults(capsys):
+def test_the_usage_shows_description_placeholders_and_defaults():
+    assert usage(Wash, "wash.sh") == (
+        "usage: wash.sh DISH... [options]\n"
+        "\n"
+        "Washes the dishes.\n"
+        "\n"
+        "They are dried as well.\n"
+        "\n"
+        "arguments:\n"
+        "  DISH              what to wash\n"
+        "\n"
+        "options:\n"
+        "  --hot             with hot water\n"
+        "  --dry-with red|blue\n"
+        "                    a cloth\n"
+        "  --seconds N       for each, 5 % more if needed (default: 5)\n"
+        "  --rack FILE       where to (default: src/rack)\n"
+        "  -h, --help        print this text\n"
+    )
+
+
+def test_options_of_a_class_precede_those_that_it_inherits():
+    text = usage(WashTwice, "wash.sh")
+    assert text.index("--twice") < text.index("--hot")
+
+
+def test_help_is_the_usage(capsys):
     with pytest.raises(SystemExit):
         parse(Wash, ["--help"], "wash.sh")
-    text = capsys.readouterr().out
-    assert "Washes the dishes." in text
-    assert "for each (default: 5.0)" in text
-    assert "Not shown" not in text
-    assert "a cloth\n" in text
+    assert capsys.readouterr().out == usage(Wash, "wash.sh")
+
+
+@dataclass(frozen=True)
+class Dry:
+    """Dries the dishes."""
+
+    dishes: Tuple[str, ...] = argument("what to dry", default=(), nargs="*", metavar="DISH")
+    quick: bool = option(False, "not wholly")
+
+
+def test_options_may_stand_between_arguments():
+    assert parse(Dry, ["cup", "--quick", "pan"], "dry.sh") == Dry(("cup", "pan"), True)
+    assert parse(Dry, [], "dry.sh") == Dry()
+
+
+def test_help_lists_arguments_between_which_options_may_stand(capsys):
+    with pytest.raises(SystemExit):
+        parse(Dry, ["cup", "--help"], "dry.sh")
+    assert "  DISH        what to dry\n" in capsys.readouterr().out

@@ -10,11 +10,12 @@ from typing import Any, Dict, List
 
 import numpy as np
 
+from amcl_lite.motion.custom_model import CONTRACT as MOTION_MODEL
+from amcl_lite.sensor.custom_model import CONTRACT as SENSOR_MODEL
 from planar import Pose2
 from planar.config.config_file import Section
 from planar.config.parameters import Interval, check_parameters, parameter
 from planar.config.settings import check
-from planar.plugins import check_plugin_name
 
 MOTION_MODELS = ("diff", "omni", "diff-corrected", "omni-corrected")
 SENSOR_MODELS = ("likelihood_field", "likelihood_field_prob", "beam")
@@ -28,14 +29,10 @@ STRICT_COMPAT_SETTINGS: Dict[str, Any] = {
 
 
 def _check_plugins(settings: "LocalizerSettings") -> None:
-    # Late: the contracts are made of these settings.
-    from amcl_lite.motion.custom_model import CONTRACT as MOTION
-    from amcl_lite.sensor.custom_model import CONTRACT as SENSOR
-
-    if settings.motion_plugin:
-        check_plugin_name("motion_plugin", settings.motion_plugin, MOTION)
-    if settings.sensor_plugin:
-        check_plugin_name("sensor_plugin", settings.sensor_plugin, SENSOR)
+    for parameter_name, contract in (("motion_plugin", MOTION_MODEL), ("sensor_plugin", SENSOR_MODEL)):
+        name = getattr(settings, parameter_name)
+        if name:
+            contract.check_name(parameter_name, name)
 
 
 @dataclass(frozen=True)
@@ -211,7 +208,7 @@ class LocalizerSettings:
     refine_pose: bool = parameter(True, "improve the estimate and a tenth of the particles by scan matching")
     recover_when_lost: bool = parameter(True, "when scans do not fit the map, add particles where they do")
     update_when_still: float = parameter(
-        0.0,
+        0.05,
         "how often a robot that does not move is localized nevertheless; 0: never",
         "Hz",
         Interval(0.0),

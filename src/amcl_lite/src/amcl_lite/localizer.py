@@ -19,7 +19,7 @@ from amcl_lite.filter.particles import (
 )
 from amcl_lite.filter.resampling import DrawPoses
 from amcl_lite.filter.statistics import best_cluster, mean_and_covariance
-from amcl_lite.motion.custom_model import motion_model_of
+from amcl_lite.motion.motion_model import motion_model_of
 from amcl_lite.motion.update_policy import UpdatePolicy
 from amcl_lite.recovery.hypotheses import find_hypotheses
 from amcl_lite.recovery.quality import LostDetector, ScanQuality, scan_quality

@@ -11,7 +11,7 @@ from home_service_gym import NAMES
 from planar import PlanarError, SettingsError
 from planar.config.hints import hint
 from planar.config.yaml_table import parse_table
-from planar.plugins import load_object
+from planar.extensions import load_object
 
 Policy = Callable[[Any], Any]
 # Control periods between two frames of an animation.

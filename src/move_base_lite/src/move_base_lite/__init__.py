@@ -19,7 +19,7 @@ from move_base_lite.errors import (
 from move_base_lite.move_base import MoveBase, PoseHistory
 from move_base_lite.navigator import Decision, Navigator, NavigatorInputs, RobotState, Status
 from move_base_lite.parameters import load_settings, settings_from_parameters
-from move_base_lite.planning import GlobalPlanner, PlannerSettings
+from move_base_lite.planning import GlobalPlanner, PlannerSettings, PlanRequest
 from move_base_lite.recovery import RecoveryBehavior, RecoveryContext, RecoverySettings
 from planar.deprecation import deprecated_names
 
@@ -43,6 +43,7 @@ __all__ = [
     "NoPath",
     "OutOfMap",
     "Plan",
+    "PlanRequest",
     "PlannerSettings",
     "PlanningError",
     "PluginFailed",

@@ -1,7 +1,7 @@
 """Settings of the Navigator, and the configuration files generated from them."""
 
 from dataclasses import dataclass, field
-from typing import Any, Tuple
+from typing import Any, Mapping, Tuple
 
 from move_base_lite.collision_monitor import MonitorSettings
 from move_base_lite.control import LOCAL_PLANNERS, ControllerSettings, DwaSettings
@@ -13,11 +13,11 @@ from move_base_lite.costmap.layers.obstacles import OBSTACLES, ObstacleSettings,
 from move_base_lite.costmap.layers.static import STATIC, StaticSettings
 from move_base_lite.planning import GLOBAL_PLANNERS, NavfnSettings, PlannerSettings
 from move_base_lite.planning.navfn import GLOBAL_PLANNER, NAVFN
-from move_base_lite.plugin import Plugin
 from move_base_lite.recovery import MoveSlowSettings, NamedRecovery, RotateSettings
 from move_base_lite.recovery.move_slow import MOVE_SLOW
 from planar.config.config_file import ConfigFiles, Section
 from planar.config.parameters import POSITIVE, Parameter, at_least, check_parameters, parameter
+from planar.extensions import registries_of
 
 
 @dataclass(frozen=True)
@@ -90,6 +90,7 @@ class NavigatorSettings:
         global_costmap: Costmap for planning.
         local_costmap: Costmap for control.
         recoveries: Recovery behaviours, in order.
+        extensions: Settings of the plugins of other extension points, by the parameter that selects them.
     """
 
     move_base: MoveBaseSettings = field(default_factory=MoveBaseSettings)
@@ -98,6 +99,7 @@ class NavigatorSettings:
     global_costmap: CostmapSettings = field(default_factory=CostmapSettings)
     local_costmap: CostmapSettings = field(default_factory=CostmapSettings)
     recoveries: Tuple[NamedRecovery, ...] = ()
+    extensions: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def scan_topic(self) -> str:
@@ -131,9 +133,16 @@ _COSTMAP = Section(
     Section("inflation_layer", InflationSettings),
 )
 # The namespace TrajectoryPlannerROS is listed with the defaults of rotate_recovery, which differ.
-_MEMBERS: Tuple[Plugin[Any], ...] = (*GLOBAL_PLANNERS.members, *LOCAL_PLANNERS.members)
-_PLANNERS = [
-    Section(planner.short_name, planner.settings) for planner in _MEMBERS if planner is not TRAJECTORY
+_PLUGINS = [
+    Section(plugin.short_name, plugin.settings)
+    for registry in registries_of("move_base_lite").values()
+    for plugin in registry.members
+    if plugin is not TRAJECTORY
+]
+_OTHERS = [
+    Parameter(key, registry.names[0], registry.point.kind)
+    for key, registry in registries_of("move_base_lite").items()
+    if registry not in (GLOBAL_PLANNERS, LOCAL_PLANNERS)
 ]
 CONFIG_FILES: ConfigFiles = {
     "move_base_lite.yaml": Section(
@@ -144,8 +153,9 @@ CONFIG_FILES: ConfigFiles = {
             f"or {GLOBAL_PLANNER.name}, whose use_dijkstra: false means A*",
         ),
         Parameter("base_local_planner", DWA.name, f"or {MPPI.name}, which drives better"),
+        *_OTHERS,
         MoveBaseSettings,
-        *_PLANNERS,
+        *_PLUGINS,
         Section(TRAJECTORY.short_name, RotateSettings, about="read by rotate_recovery, as in move_base"),
         Section(
             "move_slow", MoveSlowSettings, about=f"read by a recovery of that name, type {MOVE_SLOW.name}"

@@ -1,13 +1,11 @@
 # ruff: noqa: N818  -- the names are the reasons
 """Errors of navigation: the class is the reason, the text is for people."""
 
-from typing import TYPE_CHECKING, Optional
+from typing import Optional
 
+from move_base_lite.trajectory_samples import TrajectorySamples
 from planar import PlanarError
 from planar.deprecation import renamed_fields
-
-if TYPE_CHECKING:
-    from move_base_lite.control.local_planner import TrajectorySamples
 
 
 class NavigationError(PlanarError):
@@ -66,7 +64,7 @@ class ControlError(NavigationError):
     code = "NO_VALID_CONTROL"
     outcome = 100
 
-    def __init__(self, text: str, trajectory_samples: "Optional[TrajectorySamples]" = None):
+    def __init__(self, text: str, trajectory_samples: Optional[TrajectorySamples] = None):
         """Create the error.
 
         Args:

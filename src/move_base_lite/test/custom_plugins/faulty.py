@@ -81,8 +81,8 @@ class BadPlan:
     def __init__(self, settings):
         pass
 
-    def plan(self, costs, window, start_xy, goal_xy, tolerance=0.0):
-        return np.array([start_xy, (np.nan, 0.0)])
+    def plan(self, request):
+        return np.array([request.start_xy, (np.nan, 0.0)])
 
 
 class BadRecovery:

@@ -6,7 +6,15 @@ from typing import Optional, Tuple
 import numba
 import numpy as np
 
-from move_base_lite import CostmapWindow, GoalBlocked, NoPath, OutOfMap, PlannerSettings, StartBlocked
+from move_base_lite import (
+    CostmapWindow,
+    GoalBlocked,
+    NoPath,
+    OutOfMap,
+    PlannerSettings,
+    PlanRequest,
+    StartBlocked,
+)
 from move_base_lite.costmap import INSCRIBED
 from planar.config.parameters import POSITIVE, Interval, parameter
 
@@ -34,22 +42,11 @@ class RrtStar:
     def __init__(self, settings: RrtStarSettings):
         self._settings = settings
 
-    def plan(
-        self,
-        costs: np.ndarray,
-        window: CostmapWindow,
-        start_xy: Tuple[float, float],
-        goal_xy: Tuple[float, float],
-        tolerance: float = 0.0,
-    ) -> np.ndarray:
+    def plan(self, request: PlanRequest) -> np.ndarray:
         """Find a path between two points.
 
         Args:
-            costs: Costs (rows, cols) of the global costmap, uint8.
-            window: Position of the cells.
-            start_xy: Start in the map frame [m].
-            goal_xy: Goal in the map frame [m].
-            tolerance: Not used: the path ends at the goal.
+            request: Global costmap, start and goal; the tolerance is not used, as the path ends at the goal.
 
         Returns:
             Points (N, 2) of the path, at most one cell apart [m].
@@ -60,6 +57,8 @@ class RrtStar:
             OutOfMap: The start or the goal is outside of the map.
             NoPath: The samples connect no path.
         """
+        costs, window = request.costs, request.window
+        start_xy, goal_xy = request.start_xy, request.goal_xy
         is_free = (costs < INSCRIBED) | (self._settings.allow_unknown & (costs == 255))
         start, goal = (self._cell(xy, window) for xy in (start_xy, goal_xy))
         for cell, kind in ((start, StartBlocked), (goal, GoalBlocked)):

@@ -9,7 +9,7 @@ from typing import ClassVar, Mapping, Tuple
 from planar.config.config_file import Section
 from planar.config.parameters import Interval, check_parameters, parameter
 from planar.config.settings import check
-from planar.plugins import check_plugin_name
+from slam_lite.matching.scan_matcher import CONTRACT
 
 # Parameters of gmapping's particle filter, which have no counterpart in a pose graph.
 WITHOUT_EFFECT = (
@@ -120,9 +120,7 @@ class MapperSettings:
             within = f"at most maxRange ({self.max_range:g})"
             check(self.usable_range <= self.max_range, "usable_range", within, self.usable_range)
         if self.matcher_plugin:
-            from slam_lite.matching.scan_matcher import CONTRACT  # imports this module
-
-            check_plugin_name("matcher_plugin", self.matcher_plugin, CONTRACT)
+            CONTRACT.check_name("matcher_plugin", self.matcher_plugin)
 
 
 @dataclass(frozen=True)

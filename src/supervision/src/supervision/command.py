@@ -5,7 +5,7 @@ import pkgutil
 from dataclasses import is_dataclass
 from typing import Iterable, List, Protocol, Type
 
-from planar.plugins import PluginContract, PluginError, load_plugin
+from planar.extensions import ExtensionPoint, PluginError
 
 
 class Command(Protocol):
@@ -34,7 +34,14 @@ class Command(Protocol):
         """
 
 
-CONTRACT = PluginContract("command", Command, None, "home_service.commands")
+def _requirements(found: type) -> Iterable[str]:
+    if not is_dataclass(found):
+        yield "make it a dataclass whose fields are the options"
+
+
+CONTRACT: ExtensionPoint[Command] = ExtensionPoint(
+    "command", Command, "home_service.commands", requirements=_requirements
+)
 
 
 class CommandFolder:
@@ -67,10 +74,7 @@ class CommandFolder:
 
 
 def _load_custom(name: str) -> Type[Command]:
-    found = load_plugin(name, CONTRACT)
+    found = CONTRACT.load(name)
     if found is None:
         raise PluginError(f"{name} is no command; expected a name like my_package.my_module/MyCommand")
-    has_options = is_dataclass(found)
-    if not has_options:
-        raise PluginError(f"{name} is no command: make it a dataclass whose fields are the options")
     return found

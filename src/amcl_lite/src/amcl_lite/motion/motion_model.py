@@ -12,10 +12,31 @@ import numba
 import numpy as np
 
 from amcl_lite.config import LocalizerSettings
+from amcl_lite.motion.custom_model import CONTRACT, MotionModel
 from planar import Pose2, wrap
 
 # Below this translation the motion counts as a rotation in place [m].
 _NO_TRANSLATION = 0.01
+
+
+def motion_model_of(settings: LocalizerSettings) -> MotionModel:
+    """Create the selected model. Raises LocalizationError if a user-defined one cannot be created."""
+    if settings.motion_plugin:
+        return CONTRACT.make(settings.motion_plugin, settings)
+    return AmclMotionModel(settings)
+
+
+class AmclMotionModel:
+    """The motion models of amcl and their corrected variants."""
+
+    def __init__(self, settings: LocalizerSettings):
+        self._settings = settings
+
+    def moved(
+        self, poses: np.ndarray, base_before: Pose2, base_now: Pose2, rng: np.random.Generator
+    ) -> np.ndarray:
+        """See MotionModel.moved."""
+        return moved(poses, base_before, base_now, self._settings, rng)
 
 
 def moved(

@@ -1,6 +1,6 @@
 """Localize offline in a recorded bag, as fast as possible: ``amcl_lite_replay BAG --map MAP``."""
 
-import argparse
+from dataclasses import dataclass
 from pathlib import Path
 from typing import List, Optional, Tuple
 
@@ -13,7 +13,7 @@ from planar import Pose2, load_map, wrap
 from planar.config.parameters import official_names, settings_from_yaml
 from planar_ros.bags.bag_reader import BagError
 from planar_ros.bags.offline_replay import (
-    add_replay_options,
+    ReplayOptions,
     load_settings,
     process_scans,
     run_replay,
@@ -21,45 +21,40 @@ from planar_ros.bags.offline_replay import (
     write_trajectory,
 )
 from planar_ros.bags.scan_log import LoggedScan, ScanLog
+from supervision.command_line import option
+
+
+@dataclass(frozen=True)
+class AmclReplay(ReplayOptions):
+    """Localize a robot in a recorded bag, without a master.
+
+    The same bag, map, parameters and seed give the same trajectory. It is written to the current folder under
+    the name of the bag if no file is given. If the bag contains ground truth, the errors are printed.
+    """
+
+    map: Optional[Path] = option(
+        None, "the map, as for map_server (required)", type=Path, metavar="YAML", required=True
+    )
+    everywhere: bool = option(False, "start with global localization", flag="--global")
+    seed: Optional[int] = option(None, "seed of all random numbers (default: parameter seed, 0)", type=int)
+    start: Optional[Tuple[float, float, float]] = option(
+        None,
+        "where the robot starts in the map (default: the initial_pose_* of the parameters, 0 0 0)",
+        type=float,
+        nargs=3,
+        metavar=("X", "Y", "YAW"),
+    )
+    truth_topic: str = option(
+        "base_pose_ground_truth", "topic of the ground truth", flag="--truth_topic", metavar="TOPIC"
+    )
 
 
 def main(arguments: Optional[List[str]] = None) -> int:
     """Run the command; returns 0, or 1 if the bag was truncated, or 2 if nothing was localized."""
-    return run_replay(_parser(), _replay, arguments)
+    return run_replay(AmclReplay, "amcl_lite_replay", _replay, arguments)
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog="amcl_lite_replay",
-        description="Localize a robot in a recorded bag, without a master. The same bag, map, parameters and "
-        "seed give the same trajectory. If the bag contains ground truth, the errors are printed.",
-    )
-    add_replay_options(parser, "amcl")
-    parser.add_argument("--map", metavar="YAML", type=Path, required=True, help="the map, as for map_server")
-    parser.add_argument(
-        "--trajectory",
-        metavar="OUT.tum",
-        type=Path,
-        help="where to write the pose in the map at every scan (default: the name of the bag, here)",
-    )
-    parser.add_argument(
-        "--global", dest="everywhere", action="store_true", help="start with global localization"
-    )
-    parser.add_argument("--seed", type=int, help="seed of all random numbers (default: parameter seed, 0)")
-    parser.add_argument(
-        "--start",
-        metavar=("X", "Y", "YAW"),
-        type=float,
-        nargs=3,
-        help="where the robot starts in the map (default: the initial_pose_* of the parameters, 0 0 0)",
-    )
-    parser.add_argument(
-        "--truth_topic", default="base_pose_ground_truth", help="default: base_pose_ground_truth"
-    )
-    return parser
-
-
-def _replay(options: argparse.Namespace) -> int:
+def _replay(options: AmclReplay) -> int:
     settings = load_settings(NodeSettings, options.config, also_known=official_names(InitialPose))
     log = ScanLog(options.bag, options.scan_topic, settings.base_frame, settings.odom_frame, warn)
     localizer = _localizer(options, settings)
@@ -86,7 +81,7 @@ def _replay(options: argparse.Namespace) -> int:
     return exit_code
 
 
-def _localizer(options: argparse.Namespace, settings: NodeSettings) -> Localizer:
+def _localizer(options: AmclReplay, settings: NodeSettings) -> Localizer:
     """Create the Localizer at the start pose of the options or of the parameters."""
     seed = settings.seed if options.seed is None else options.seed
     rng = np.random.default_rng(seed if seed >= 0 else None)

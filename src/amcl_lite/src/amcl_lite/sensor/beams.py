@@ -1,41 +1,16 @@
 """The beams of a scan that the sensor model uses."""
 
 import math
-from dataclasses import dataclass
-from functools import cached_property
 
 import numba
 import numpy as np
 
 from amcl_lite.config import LocalizerSettings
 from amcl_lite.errors import LocalizationError
+from amcl_lite.sensor.custom_model import Beams
 from planar import Scan
 
 _MANY = 400
-
-
-@dataclass(frozen=True, eq=False)
-class Beams:
-    """Selected beams of one scan in the base frame.
-
-    Attributes:
-        ranges: (N,) [m]; ``max_range`` for beams without return.
-        directions: (N,) [rad].
-        max_range: Largest range [m].
-        start_xy: Position of the laser (2,) [m].
-        unmeasured: Number of selected beams that were dropped because they are NaN.
-    """
-
-    ranges: np.ndarray
-    directions: np.ndarray
-    max_range: float
-    start_xy: np.ndarray
-    unmeasured: int = 0
-
-    @cached_property
-    def ends_xy(self) -> np.ndarray:
-        """End points (M, 2) of the beams with a return."""
-        return _ends(self.ranges, self.directions, self.max_range, self.start_xy)
 
 
 def all_beams(scan: Scan, settings: LocalizerSettings) -> Beams:
@@ -92,15 +67,3 @@ def _measured(ranges, step, sweep, min_range, max_range):
             directions[count] = first + increment * i + turned
             count += 1
     return kept[:count], directions[:count]
-
-
-@numba.njit(cache=True)
-def _ends(ranges, directions, max_range, start_xy):
-    """Return the end points (M, 2) of beams shorter than ``max_range``."""
-    ends_xy, count = np.empty((ranges.size, 2)), 0
-    for i in range(ranges.size):
-        if ranges[i] < max_range:
-            ends_xy[count, 0] = start_xy[0] + ranges[i] * math.cos(directions[i])
-            ends_xy[count, 1] = start_xy[1] + ranges[i] * math.sin(directions[i])
-            count += 1
-    return ends_xy[:count]

@@ -4,7 +4,7 @@ import numpy as np
 
 from amcl_lite.config import LocalizerSettings
 from amcl_lite.sensor.beams import Beams
-from amcl_lite.sensor.custom_model import CustomSensorModel
+from amcl_lite.sensor.custom_model import CONTRACT
 from amcl_lite.sensor.likelihood_field import likelihood_field
 from amcl_lite.sensor.sensor_model import log_beam_model, log_likelihood_field, log_likelihood_field_prob
 from planar import FREE, OCCUPIED, OccupancyGrid
@@ -19,9 +19,9 @@ class ScanLikelihood:
     def __init__(self, grid: OccupancyGrid, settings: LocalizerSettings):
         self.field = likelihood_field(grid, settings.sigma_hit, settings.likelihood_max_distance)
         self._settings = settings
-        self._custom = None
-        if settings.sensor_plugin:
-            self._custom = CustomSensorModel(grid, settings)
+        self._custom = (
+            CONTRACT.make(settings.sensor_plugin, grid, settings) if settings.sensor_plugin else None
+        )
         self._opaque_grid = _opaque(grid) if settings.sensor_model == "beam" else None
 
     def log_likelihoods(self, poses: np.ndarray, beams: Beams, has_converged: bool) -> np.ndarray:

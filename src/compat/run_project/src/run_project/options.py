@@ -1,28 +1,14 @@
 """Command line options of run_project."""
 
 import argparse
-import math
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Optional, Sequence, Tuple
 
 from run_project.judging.run_record import FINAL_STATUSES
 from supervision import command_line
-from supervision.command_line import argument, option
-
-
-def _speed(text: str) -> float:
-    value = float(text)
-    if not (math.isfinite(value) and value >= 0.0):
-        raise argparse.ArgumentTypeError(f"must be 0 or more, got {text}")
-    return value
-
-
-def _seconds(text: str) -> float:
-    value = float(text)
-    if not (math.isfinite(value) and value > 0.0):
-        raise argparse.ArgumentTypeError(f"must be positive, got {text}")
-    return value
+from supervision.command_line import argument, option, seconds
+from supervision.view_options import ViewOptions
 
 
 def _goal_statuses(text: str) -> Tuple[str, ...]:
@@ -42,54 +28,52 @@ def _window_input(text: str) -> str:
 
 
 @dataclass(frozen=True)
-class ProjectOptions:
+class ProjectOptions(ViewOptions):
     """Run an existing home-service project, unmodified and headless.
+
+    The project is one for the TurtleBot 2, Kinetic and Gazebo 7. Works on a copy, with stand-ins for xterm,
+    Gazebo and rviz; the checkout is only read. Prints goals and markers as they happen, then a verdict;
+    result.json and a log of each window are in the run folder. More in docs/how_to/run_a_project.md.
+
+    [-- ARGUMENT...] at the end of the command line are the arguments of the script.
+
+    Exit code: 0 all goals reached, 1 failure, 2 invalid input, 130 interrupted.
 
     Attributes:
         script_arguments: Arguments after ``--``, passed to the script.
     """
 
-    path: Path = argument("the project's checkout", metavar="PATH", type=Path)
+    path: Path = argument(
+        "the checkout: a workspace, the content of src, or one package",
+        default=Path(),
+        metavar="PATH",
+        type=Path,
+    )
     script: Optional[str] = argument(
-        "script to run (default: home_service.sh), or go_chase_it, where_am_i, map_my_world",
+        "shell script to run (default: home_service.sh), or go_chase_it, where_am_i, map_my_world",
         default=None,
         metavar="SCRIPT",
         nargs="?",
     )
-    speed: Optional[float] = option(
-        None, "1: real time, N: N times real time, 0: as fast as the nodes keep up", type=_speed
-    )
     seed: int = option(0, "seed of all noise", type=int)
-    timeout: float = option(600.0, "time limit in seconds of wall time", type=_seconds)
+    timeout: float = option(600.0, "the run fails after N seconds of wall time", type=seconds)
     expect: Optional[Tuple[str, ...]] = option(
-        None, "expected final status of each goal, as aborted,succeeded", type=_goal_statuses
+        None,
+        "expected ends of its goals, such as aborted,succeeded",
+        type=_goal_statuses,
+        metavar="LIST",
     )
     type: Tuple[str, ...] = option(
         (),
-        "input for programs that read from their terminal, as add_markers=0",
+        "input for windows whose programs wait for it, such as add_markers=0",
         type=_window_input,
         nargs="+",
         metavar="WINDOW=TEXT",
     )
-    rviz: bool = option(False, "show the run in rviz")
-    web: bool = option(False, "show the run in the browser: prints the URL of the cockpit")
-    web_port: Optional[str] = option(None, "address of the cockpit", metavar="[ADDRESS:]PORT")
+    rviz: bool = option(False, "show it in rviz with the project's configuration")
     record: bool = option(False, "record a bag into the run folder")
-    build_only: bool = option(False, "build only, do not run")
-    output: Path = option(Path("runs"), "folder in which the run folder is created", type=Path)
+    build_only: bool = option(False, "stop after the build")
     script_arguments: Tuple[str, ...] = ()
-
-    @property
-    def effective_speed(self) -> float:
-        """Simulated seconds per second of wall time; 0: as fast as the nodes keep up.
-
-        Defaults to real time with ``--rviz`` or ``--web``.
-        """
-        return float(self.rviz or self.shows_cockpit) if self.speed is None else self.speed
-
-    @property
-    def shows_cockpit(self) -> bool:
-        return self.web or self.web_port is not None
 
 
 def parse(words: Sequence[str]) -> ProjectOptions:

@@ -8,20 +8,32 @@ from supervision.command_line import argument, option
 
 @dataclass(frozen=True)
 class Cockpit:
-    """Show and control a running ROS graph in the browser, or play a recording."""
+    """Show and control a running ROS graph in the browser, or play a recording.
+
+    The functions of rviz, Gazebo's window and rqt in one page. Prints the URL of the page with its access
+    token. The graph is that of ROS_MASTER_URI or, without a master there, the newest one on this machine.
+    Ctrl-C closes the page; the graph continues.
+
+    Exit code: 0 success, 1 failure or no result.json, 2 invalid input, 130 interrupted.
+    """
 
     recordings: Tuple[Path, ...] = argument(
-        "bags, or folders of bags or of runs, to play",
+        "bags, folders of bags or run folders to play, from any position at any speed",
         default=(),
         type=Path,
         nargs="*",
         metavar="RECORDING",
     )
-    web_port: str = option(
-        "127.0.0.1:0", "where the page is served; 0: a free port", metavar="[ADDRESS:]PORT"
+    web_port: str = option("127.0.0.1:0", "address of the page; port 0: a free one", metavar="[ADDRESS:]PORT")
+    tool: Optional[str] = option(
+        None, "open this tool at once (docs/how_to/watch_in_the_browser.md lists them)", metavar="NAME"
     )
-    tool: Optional[str] = option(None, "open this tool at once", metavar="NAME")
-    output: Path = option(Path("runs"), "folder of run folders, for recordings", type=Path)
+    output: Path = option(
+        Path("runs"),
+        "folder in which the run folder of a replay is created",
+        type=Path,
+        metavar="FOLDER",
+    )
 
     def run(self) -> int:
         return self._show_recording() if self.recordings else self._show_graph()

@@ -7,11 +7,16 @@ from supervision.command_line import argument, option
 
 @dataclass(frozen=True)
 class Compare:
-    """Compare two runs: a table in the terminal, and a page."""
+    """Compare two run folders: a table in the terminal, and a page with both maps and charts.
+
+    Exit code: 0 success, 1 failure, 2 invalid input, 130 interrupted.
+    """
 
     first: Path = argument("folder of a run", type=Path, metavar="A")
     second: Path = argument("folder of another run", type=Path, metavar="B")
-    page: Optional[Path] = option(None, "write the page to this file, not to B", type=Path, metavar="FILE")
+    page: Optional[Path] = option(
+        None, "file of the page (default: compare.html in B)", type=Path, metavar="FILE"
+    )
 
     def run(self) -> int:
         from rich.console import Console

@@ -12,14 +12,22 @@ RESPAWNED = ("amcl", "move_base", "map_server", "robot_state_publisher", "pick_o
 
 @dataclass(frozen=True)
 class HomeService(GraphOptions, MissionOptions):
-    """Fetch the object at the pick-up zone and deliver it at the drop-off zone."""
+    """Fetch the object at the pick-up zone and deliver it at the drop-off zone.
+
+    Or runs another mission. Prints the run folder with logs and result.json, and a verdict.
+
+    Exit code: 0 success, and Ctrl-C with --serve; 1 failure or no result.json, 2 invalid input, 130
+    interrupted.
+    """
 
     faults: Optional[Path] = option(
-        None, "YAML with a list of faults; default: those of the mission", type=Path, metavar="FILE"
+        None,
+        "YAML with a list of faults (docs/reference/faults.md; default: that of the mission)",
+        type=Path,
     )
     serve: bool = option(False, "wait for missions sent to the action deliver, until Ctrl-C")
     marker_source: str = option(
-        "tf", "source of the robot's pose for the marker", choices=("tf", "amcl_pose", "odom", "state")
+        "tf", "source of the robot pose for the marker", choices=("tf", "amcl_pose", "odom", "state")
     )
 
     @property

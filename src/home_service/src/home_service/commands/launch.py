@@ -8,9 +8,13 @@ from supervision.command_line import option
 
 @dataclass(frozen=True)
 class Launch(GraphOptions):
-    """Start the simulated home with the robot in it, until Ctrl-C."""
+    """Start the simulated home with the robot in it, until Ctrl-C.
 
-    map: Optional[Path] = option(None, "show this map of the world with it", type=Path, metavar="FILE")
+    Exit code: 0 ended by Ctrl-C, 1 failure or no result.json, 2 invalid input, 130 interrupted before it was
+    ready.
+    """
+
+    map: Optional[Path] = option(None, "show this map of the world with it", type=Path)
 
     is_interactive = True
 

@@ -5,11 +5,14 @@ from evaluation.options import MappingOptions
 
 @dataclass(frozen=True)
 class MapHome(MappingOptions):
-    """Let the robot explore the world, save its map, and score it against the true one."""
+    """Explore a world with SLAM, return, save the map, and score it against the true one.
+
+    Exit code: 0 success, 1 failure or no result.json, 2 invalid input, 130 interrupted.
+    """
 
     def run(self) -> int:
-        from headless_mission.inputs import read_world
+        from headless_mission.inputs import read_mapped_world
         from home_service.ros.mapping import make_scored_map
 
-        stage = read_world(self)
+        stage = read_mapped_world(self)
         return make_scored_map(self, self.mapping(explores=True), stage)

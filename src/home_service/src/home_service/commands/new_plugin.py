@@ -7,6 +7,7 @@ from evaluation.options import ROOT
 from supervision.command_line import argument, option
 
 TEMPLATES = ROOT / "src/home_service/templates"
+EXAMPLES = ROOT / "src/plugin_examples"
 PACKAGE_NAME = re.compile(r"[a-z][a-z0-9_]*")
 
 
@@ -17,22 +18,28 @@ class PluginKind:
     Attributes:
         user: Package that uses it.
         chosen: How it is selected there, for people.
+        example: Module and class of plugin_examples with which a new one begins; empty: the template.
     """
 
     user: str
     chosen: str
+    example: str = ""
 
 
 KINDS = {
-    "local_planner": PluginKind("move_base_lite", "--planner {plugin}, or base_local_planner: {plugin}"),
-    "global_planner": PluginKind("move_base_lite", "base_global_planner: {plugin}"),
+    "local_planner": PluginKind(
+        "move_base_lite", "--planner {plugin}, or base_local_planner: {plugin}", "pure_pursuit/PurePursuit"
+    ),
+    "global_planner": PluginKind("move_base_lite", "base_global_planner: {plugin}", "rrt_star/RrtStar"),
     "recovery_behavior": PluginKind("move_base_lite", "recovery_behaviors: [{{name: mine, type: {plugin}}}]"),
     "costmap_layer": PluginKind(
-        "move_base_lite", "local_costmap/plugins: [..., {{name: mine, type: {plugin}}}]"
+        "move_base_lite",
+        "local_costmap/plugins: [..., {{name: mine, type: {plugin}}}]",
+        "social_distance/SocialDistance",
     ),
-    "sensor_model": PluginKind("amcl_lite", "sensor_plugin: {plugin}"),
+    "sensor_model": PluginKind("amcl_lite", "sensor_plugin: {plugin}", "short_readings/ShortReadings"),
     "motion_model": PluginKind("amcl_lite", "motion_plugin: {plugin}"),
-    "scan_matcher": PluginKind("slam_lite", "matcher_plugin: {plugin}"),
+    "scan_matcher": PluginKind("slam_lite", "matcher_plugin: {plugin}", "closest_points/ClosestPoints"),
     "fault": PluginKind("sim_bridge", "faults: [{{kind: {plugin}, start: 8.0}}] in a mission or a scenario"),
     "world_generator": PluginKind("laboratory", "world: {{{plugin}: {{}}}} in a scenario"),
 }
@@ -51,18 +58,6 @@ PACKAGE_XML = """<?xml version="1.0"?>
   {depends}
 </package>
 """
-CMAKE_LISTS = """cmake_minimum_required(VERSION 3.0.2)
-project({package})
-
-find_package(catkin REQUIRED)
-catkin_python_setup()
-catkin_package()
-"""
-SETUP = """from catkin_pkg.python_setup import generate_distutils_setup
-from setuptools import find_packages, setup
-
-setup(**generate_distutils_setup(packages=find_packages("src"), package_dir={"": "src"}))
-"""
 TEST = '''"""{title} keeps its contract."""
 
 import pytest
@@ -80,11 +75,16 @@ def test_it_keeps_its_contract(check):
 
 @dataclass(frozen=True)
 class NewPlugin:
-    """Create a catkin package with a planner, a model, a fault or another custom plugin."""
+    """Create a catkin package in src/ with a plugin class and its test.
 
-    name: str = argument("of the package, as my_planner", metavar="NAME")
-    kind: str = argument("what it is to be", choices=tuple(KINDS), metavar="KIND")
-    source: Path = option(ROOT / "src", "where packages are", type=Path)
+    How to write each kind: docs/how_to/write_a_plugin.md.
+
+    Exit code: 0 success, 2 invalid input, 130 interrupted.
+    """
+
+    name: str = argument("name of the package, such as my_planner", metavar="NAME")
+    kind: str = argument(f"one of {', '.join(KINDS)}", choices=tuple(KINDS), metavar="KIND")
+    source: Path = option(ROOT / "src", "folder of the package", type=Path, metavar="FOLDER")
 
     def run(self) -> int:
         from planar import SettingsError, write_atomically
@@ -114,22 +114,31 @@ class NewPlugin:
 
     def _texts(self) -> Dict[str, str]:
         """Return the files of the package."""
-        title = self.name.replace("_", " ").capitalize()
-        user = KINDS[self.kind].user
+        kind, title = KINDS[self.kind], self.name.replace("_", " ").capitalize()
         words = {
             "package": self.name,
             "title": title,
             "kind": self.kind,
             "plugin": self._plugin,
-            "user": user,
-            "depends": "\n  ".join(f"<exec_depend>{each}</exec_depend>" for each in sorted({user, *USED})),
+            "user": kind.user,
+            "depends": "\n  ".join(
+                f"<exec_depend>{each}</exec_depend>" for each in sorted({kind.user, *USED})
+            ),
         }
-        code = (TEMPLATES / f"{self.kind}.py").read_text(encoding="utf-8")
+        module, _, named = kind.example.rpartition("/")
+        source = (
+            EXAMPLES / "src/plugin_examples" / f"{module}.py" if module else TEMPLATES / f"{self.kind}.py"
+        )
+        code = source.read_text(encoding="utf-8").replace(named or "CLASS", self._class)
         return {
             "package.xml": PACKAGE_XML.format(**words),
-            "CMakeLists.txt": CMAKE_LISTS.format(**words),
-            "setup.py": SETUP,
+            "CMakeLists.txt": _of_examples("CMakeLists.txt").replace("plugin_examples", self.name),
+            "setup.py": _of_examples("setup.py"),
             f"src/{self.name}/__init__.py": f'"""{title}."""\n',
-            f"src/{self.name}/{self.kind}.py": code.replace("TITLE", title).replace("CLASS", self._class),
+            f"src/{self.name}/{self.kind}.py": code.replace("TITLE", title),
             f"test/test_{self.name}.py": TEST.format(**words),
         }
+
+
+def _of_examples(name: str) -> str:
+    return (EXAMPLES / name).read_text(encoding="utf-8")

@@ -6,7 +6,10 @@ from evaluation.verdict import ERRAND
 
 @dataclass(frozen=True)
 class PickObjects(GraphOptions, MissionOptions):
-    """Carry out a mission, by default from the pick-up to the drop-off zone."""
+    """Drive to the pick-up zone, wait there, and drive to the drop-off zone.
+
+    Exit code: 0 success, 1 failure or no result.json, 2 invalid input, 130 interrupted.
+    """
 
     def run(self) -> int:
         from evaluation.ros.run_modes import run_to_completion

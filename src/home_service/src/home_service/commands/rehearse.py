@@ -8,19 +8,26 @@ from supervision.command_line import count, option, seconds
 
 @dataclass(frozen=True)
 class Rehearse(MissionOptions):
-    """Run the home-service mission in one process, without ROS: fast and repeatable."""
+    """Run the home-service mission in one process, without ROS: fast and repeatable.
 
-    runs: int = option(1, "how many runs, each with the next seed", type=count)
+    The same simulation, localization, navigation and mission as in the nodes, many times faster than real
+    time, and repeatable bit for bit for a seed. Prints a line for each run and a verdict.
+
+    Exit code: 0 success, 1 failure, 2 invalid input, 130 interrupted.
+    """
+
+    runs: int = option(1, "number of runs, each with the next seed", type=count)
     faults: Optional[Path] = option(
-        None, "YAML with a list of faults; default: those of the mission", type=Path, metavar="FILE"
+        None,
+        "YAML with a list of faults (docs/reference/faults.md; default: that of the mission)",
+        type=Path,
     )
     each_fault: Optional[Path] = option(
         None,
-        "instead compare each kind of fault with its baseline, and write the table to this page",
+        "compare each kind of fault with a run without it instead; writes a report to FILE",
         type=Path,
-        metavar="FILE",
     )
-    timeout: float = option(600.0, "simulated seconds a run may take", type=seconds)
+    timeout: float = option(600.0, "a run fails after N simulated seconds", type=seconds)
 
     def run(self) -> int:
         return self._run_episodes() if self.each_fault is None else self._compare(self.each_fault)

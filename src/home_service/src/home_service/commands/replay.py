@@ -9,14 +9,22 @@ from supervision.command_line import argument, option, seed
 
 @dataclass(frozen=True)
 class Replay(RunOptions):
-    """Play recorded bags to localization or mapping, and measure the result."""
+    """Play recorded bags to localization or mapping, and measure the result.
+
+    Bags of recorded runs, or any with scans, odometry and /tf, are replayed without the recorded estimate.
+    The result is measured against ground truth, if that was recorded. Bags are only read; a truncated one
+    is replayed to its end, which the result states. Creates a run folder with report, trajectories (TUM)
+    and result.json.
+
+    Exit code: 0 success, 1 failure, 2 invalid input, 130 interrupted.
+    """
 
     bags: Tuple[Path, ...] = argument(
-        "bags, or folders of them or of runs", default=(), type=Path, nargs="+", metavar="BAG"
+        "bags, folders of bags or run folders", default=(), type=Path, nargs="+", metavar="BAG"
     )
     estimator: str = option(
         "amcl",
-        "localize, map, or only show what was recorded",
+        "localize in the map, make a map, or only show what was recorded",
         flag="--with",
         choices=("amcl", "slam", "recorded"),
     )
@@ -28,8 +36,10 @@ class Replay(RunOptions):
         nargs=3,
         metavar=("X", "Y", "YAW"),
     )
-    seed: int = option(0, "of every particle", type=seed)
-    save: Optional[Path] = option(None, "for slam: where to save the map", type=Path, metavar="STEM")
+    seed: int = option(0, "seed of all particles", type=seed)
+    save: Optional[Path] = option(
+        None, "for slam: write STEM.pgm and STEM.yaml, not to the run folder", type=Path, metavar="STEM"
+    )
 
     @property
     def tool(self) -> Optional[str]:

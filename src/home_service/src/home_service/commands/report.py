@@ -6,9 +6,12 @@ from supervision.command_line import argument, option
 
 @dataclass(frozen=True)
 class Report:
-    """Write the report of a run again, from its folder."""
+    """Make the report of a run again from its folder: report.html, run.png, the trajectories.
 
-    folder: Path = argument("folder of a run", type=Path, metavar="RUN")
+    Exit code: 0 success, 1 failure, 2 invalid input, 130 interrupted.
+    """
+
+    folder: Path = argument("run folder", type=Path, metavar="RUN")
     gif: bool = option(False, "also make run.gif, the run as an animation")
 
     def run(self) -> int:

@@ -24,10 +24,17 @@ def goal_list(text: str) -> List[List[float]]:
 
 @dataclass(frozen=True)
 class TestNavigation(GraphOptions, DrivingOptions):
-    """Start home, localization and navigation; goals by hand or from --goals."""
+    """Start home, localization and navigation; goals by hand or from --goals.
+
+    Exit code: 0 success, and Ctrl-C without --goals; 1 failure or no result.json, 2 invalid input, 130
+    interrupted.
+    """
 
     goals: Optional[Tuple[Sequence[float], ...]] = option(
-        None, "drive to these poses, then end", type=goal_list, metavar='"X Y YAW; X Y YAW"'
+        None,
+        "drive to these poses of the map (metres, radians), then end",
+        type=goal_list,
+        metavar='"X Y YAW; X Y YAW"',
     )
 
     @property

@@ -7,7 +7,12 @@ from supervision.command_line import argument, count, option, seed
 
 @dataclass(frozen=True)
 class Gymnasium:
-    """Run episodes of a Gymnasium environment and print their outcomes."""
+    """Run episodes of a Gymnasium environment and print their outcomes.
+
+    The environments: docs/how_to/train_a_policy.md.
+
+    Exit code: 0 success, 2 invalid input, 130 interrupted.
+    """
 
     environment: str = argument("environment id, such as PointGoal-v0", metavar="ENVIRONMENT")
     policy: str = option(

@@ -6,7 +6,12 @@ from supervision.command_line import count, option, seed
 
 @dataclass(frozen=True)
 class Train:
-    """Train the learned local planner of plugin_examples in generated homes, on the CPU."""
+    """Train the learned local planner of src/plugin_examples in generated homes, on CPUs.
+
+    Uses an evolution strategy, and prints each generation (docs/how_to/train_a_planner.md).
+
+    Exit code: 0 success, 2 invalid input, 130 interrupted.
+    """
 
     generations: int = option(60, "number of generations", type=count)
     pairs: int = option(8, "antithetic pairs of each generation", type=count)

@@ -7,20 +7,34 @@ from supervision.command_line import argument, count, option, seed
 
 @dataclass(frozen=True)
 class Falsify:
-    """Search for disturbances that make a scenario fail, and shrink the first failing case."""
+    """Search for disturbances that make a scenario fail, and shrink the first failing case.
 
-    scenario: str = argument("scenario file, or its name in scenarios/", metavar="SCENARIO")
+    Varies places of boxes, pedestrians and their goals, faults, noise and seeds, each case near the hardest
+    so far. The minimal failing case is written as a scenario. Ctrl-C loses nothing; the next start
+    continues.
+
+    Exit code: 0 nothing found, 1 a failure found, 2 invalid input, 130 interrupted.
+    """
+
+    scenario: str = argument(
+        "scenario file (docs/reference/scenarios.md), or its name in scenarios/", metavar="SCENARIO"
+    )
     trials: int = option(200, "maximum number of cases", type=count)
     boxes: int = option(4, "maximum number of boxes", type=int)
     people: int = option(2, "maximum number of pedestrians", type=int)
     faults: int = option(1, "maximum number of faults", type=int)
     seed: int = option(0, "seed of the search", type=seed)
     planner: str = option("", "local planner (default: that of the scenario)", metavar="NAME")
-    workers: Optional[int] = option(None, "processes (default: one for each core)", type=count)
+    workers: Optional[int] = option(None, "number of processes (default: one for each core)", type=count)
     scheduler: str = option(
-        "", "Dask scheduler whose workers are used instead: tcp://HOST:8786", metavar="ADDRESS"
+        "", "Dask scheduler instead of local processes: tcp://HOST:8786", metavar="ADDRESS"
     )
-    output: Path = option(Path("runs/falsify"), "folder of the results and of the failing case", type=Path)
+    output: Path = option(
+        Path("runs/falsify"),
+        "folder of the results and of the failing case",
+        type=Path,
+        metavar="FOLDER",
+    )
 
     def run(self) -> int:
         from laboratory.campaign import Workers

@@ -7,13 +7,26 @@ from supervision.command_line import argument, option, seed, words
 
 @dataclass(frozen=True)
 class Play(RunOptions):
-    """Run one scenario with one seed, in one process or as a graph of nodes, and report the outcome."""
+    """Run one scenario with one seed, and print the result, the same bit for bit as in evaluate.sh.
 
-    scenario: str = argument("scenario file, or its name in scenarios/", default="", metavar="SCENARIO")
+    Runs in one process without ROS by default. With --over ros the graph of nodes runs it, as
+    home_service.sh runs a mission, with a run folder; only then the options for speed, views, animation,
+    time limit and folder have an effect.
+
+    Exit code: 0 success, 1 failure, 2 invalid input, 130 interrupted.
+    """
+
+    scenario: str = argument(
+        "scenario file (docs/reference/scenarios.md), or its name in scenarios/",
+        default="",
+        metavar="SCENARIO",
+    )
     seed: int = option(0, "seed of all random numbers", type=seed)
-    planner: str = option("", "local planner (default: that of the scenario)", metavar="NAME")
+    planner: str = option(
+        "", "local planner (default: that of the scenario); over ROS also official", metavar="NAME"
+    )
     over: str = option(
-        "process", "run it in one process, or as a graph of ROS nodes", choices=("process", "ros")
+        "process", "how it is run: in one process, or as the graph of ROS nodes", choices=("process", "ros")
     )
 
     def run(self) -> int:

@@ -7,24 +7,33 @@ from supervision.command_line import argument, count, option, seed
 
 @dataclass(frozen=True)
 class Tune:
-    """Search for better move_base parameters on some suites, and prove the gain on others."""
+    """Search for better move_base parameters on some suites, and prove the gain on others.
 
-    suites: Tuple[str, ...] = argument("scenarios to tune on, as for evaluate.sh", nargs="+", metavar="SUITE")
+    Optuna searches for parameters with which the scenarios take less time and fail less; exact tests on the
+    same seeds prove the gain. The best are written to tuned.yaml. Ctrl-C loses nothing; the next start
+    continues with the same result.
+
+    Exit code: 0 a gain is proved, 1 none is, 2 invalid input, 130 interrupted.
+    """
+
+    suites: Tuple[str, ...] = argument(
+        "scenarios to tune on (docs/reference/scenarios.md), as for evaluate.sh", nargs="+", metavar="SUITE"
+    )
     prove: Optional[Tuple[str, ...]] = option(
-        None, "suites on which the gain is tested (required)", nargs="+", metavar="SUITE"
+        None, "suites on which the gain is proved (required)", nargs="+", metavar="SUITE"
     )
-    space: Path = option(
-        Path("scenarios/tuning/mppi.yaml"), "file of parameters and their bounds", type=Path, metavar="FILE"
-    )
+    space: Path = option(Path("scenarios/tuning/mppi.yaml"), "file of parameters and their bounds", type=Path)
     trials: int = option(64, "number of candidates", type=count)
-    seeds: str = option("0-9", "seeds each candidate runs with", metavar="SEEDS")
-    proof_seeds: str = option("1000-1099", "seeds for the test of the gain", metavar="SEEDS")
+    seeds: str = option("0-9", "seeds of the search", metavar="SEEDS")
+    proof_seeds: str = option("1000-1099", "seeds of the proof", metavar="SEEDS")
     seed: int = option(0, "seed of the search", type=seed)
-    workers: Optional[int] = option(None, "processes (default: one for each core)", type=count)
+    workers: Optional[int] = option(None, "number of processes (default: one for each core)", type=count)
     scheduler: str = option(
-        "", "Dask scheduler whose workers are used instead: tcp://HOST:8786", metavar="ADDRESS"
+        "", "Dask scheduler instead of local processes: tcp://HOST:8786", metavar="ADDRESS"
     )
-    output: Path = option(Path("runs/tune"), "folder of the results and of tuned.yaml", type=Path)
+    output: Path = option(
+        Path("runs/tune"), "folder of the results and of tuned.yaml", type=Path, metavar="FOLDER"
+    )
 
     def run(self) -> int:
         from laboratory.campaign import Workers

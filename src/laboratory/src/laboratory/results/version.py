@@ -5,20 +5,31 @@ import platform
 from functools import lru_cache
 from importlib import metadata
 from pathlib import Path
-from typing import Any, Sequence
+from typing import Any, List, Sequence, Set
+from xml.etree import ElementTree
 
 SOURCES = Path(__file__).resolve().parents[4]
-# Packages that compute the result of a run in one process, and third-party packages that do.
-PACKAGES = (
-    *("add_markers", "amcl_lite", "home_service", "laboratory", "move_base_lite", "pick_objects"),
-    *("planar", "plugin_examples", "sim_bridge", "slam_lite", "supervision"),
-)
-PACKAGES_OVER_ROS = ("home_service_msgs", "map_lite", "planar_ros", "sim_bridge_msgs")
+# Their code and that of their dependencies computes results; scenarios name planners of the second.
+ROOTS = ("laboratory", "plugin_examples")
+# Packages that only show runs.
+DISPLAYS = ("cockpit", "run_report")
 ENDINGS = (".py", ".yaml", ".urdf", ".xacro")
 ENDINGS_OVER_ROS = (".launch", ".msg", ".srv", ".action")
+DEPENDENCIES = ("depend", "exec_depend")
 LIBRARIES = ("numpy", "scipy", "numba", "pybullet")
-# Folders that do not influence results.
-LEFT_OUT = ("ros", "test", "commands", "page", "statistics", "campaign", "search", "__pycache__")
+# Folders that do not influence results, in one process.
+LEFT_OUT = (
+    "ros",
+    "planar_ros",
+    "rospy_transport",
+    "test",
+    "commands",
+    "page",
+    "statistics",
+    "campaign",
+    "search",
+    "__pycache__",
+)
 
 
 @lru_cache(maxsize=1)
@@ -27,7 +38,7 @@ def version() -> str:
     digest = hashlib.sha256(platform.python_version().encode())
     for library in LIBRARIES:
         digest.update(f"{library} {metadata.version(library)}".encode())
-    _feed(digest, PACKAGES, ENDINGS, LEFT_OUT)
+    _feed(digest, ENDINGS, LEFT_OUT)
     return digest.hexdigest()[:12]
 
 
@@ -35,15 +46,29 @@ def version() -> str:
 def version_over_ros() -> str:
     """Return a hash that also covers the nodes, launch files and message definitions."""
     digest = hashlib.sha256()
-    _feed(digest, (*PACKAGES, *PACKAGES_OVER_ROS), (*ENDINGS, *ENDINGS_OVER_ROS), ("test", "__pycache__"))
+    _feed(digest, (*ENDINGS, *ENDINGS_OVER_ROS), ("test", "__pycache__"))
     return digest.hexdigest()[:12]
 
 
-def _feed(digest: Any, packages: Sequence[str], endings: Sequence[str], left_out: Sequence[str]) -> None:
-    for package in packages:
+def packages() -> List[str]:
+    """Return the packages in src/ that compute results: those of ROOTS and all that these depend on."""
+    found: Set[str] = set(DISPLAYS)
+    waiting = list(ROOTS)
+    while waiting:
+        package = waiting.pop()
+        description = SOURCES / package / "package.xml"
+        if package not in found and description.is_file():
+            found.add(package)
+            elements = ElementTree.parse(description).getroot()
+            waiting += [str(element.text) for kind in DEPENDENCIES for element in elements.iter(kind)]
+    return sorted(found - set(DISPLAYS))
+
+
+def _feed(digest: Any, endings: Sequence[str], left_out: Sequence[str]) -> None:
+    for package in packages():
         folder = SOURCES / package
         for path in sorted(folder.rglob("*")):
-            name = path.relative_to(folder)
+            name = path.relative_to(SOURCES)
             if path.suffix in endings and not set(left_out) & set(name.parts):
-                digest.update(f"{package}/{name}".encode())
+                digest.update(str(name).encode())
                 digest.update(path.read_bytes())

@@ -4,14 +4,11 @@ import hashlib
 import json
 from dataclasses import fields, is_dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Dict
+from typing import Any, Dict
 
 from laboratory.results.version import version_over_ros
 from planar import SettingsError
-from planar.plugins import source_files
-
-if TYPE_CHECKING:
-    from laboratory.scenario.scenario import Scenario
+from planar.extensions import source_files
 
 # Fields that do not change a run.
 _IGNORED: Dict[str, Any] = {"name": "", "about": "", "seeds": (), "file": None}
@@ -36,11 +33,14 @@ _FIELD_NAMES = {
 }
 
 
-def scenario_digest(scenario: "Scenario") -> str:
+def scenario_digest(scenario: Any) -> str:
     """Compute a digest that two scenarios share only if their runs are the same.
 
     It covers all values but the name, the description and the seeds, the contents of the scenario's files,
     and the sources of custom planners, faults and world generators.
+
+    Args:
+        scenario: A Scenario.
 
     Returns:
         16 hexadecimal digits.

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Mapping, Optional, Sequence, Tuple
+from typing import Mapping, Optional, Sequence, Tuple
 
 from add_markers import CarriedParcel
 from evaluation.verdict import collision
@@ -14,16 +14,13 @@ from headless_mission import (
     parcel_for,
 )
 from laboratory.tasks.shortest_paths import shortest_path_length
-from laboratory.tasks.task import COLLISION, FAILURE, SUCCESS, TIMEOUT, RunTrace
+from laboratory.tasks.task import RunConditions, RunTrace, outcome_of
 from laboratory.worlds.source import Arena
 from pick_objects import Mission, errand_mission, load_mission
 from planar import OccupancyGrid, Pose2, SettingsError
 from planar.config.yaml_table import Table
 from planar.maps.places import load_pickup_and_dropoff, load_places, unreachable_reason
 from sim_bridge import robot_named
-
-if TYPE_CHECKING:
-    from laboratory.scenario.scenario import Scenario
 
 
 @dataclass(frozen=True)
@@ -38,7 +35,7 @@ class DeliveryTask:
     zones: Path
     mission: Optional[Path] = None
 
-    def run(self, scenario: "Scenario", arena: Arena, seed: int) -> RunTrace:
+    def run(self, scenario: RunConditions, arena: Arena, seed: int) -> RunTrace:
         mission = self._mission(arena)
         parcel = None if self.mission else parcel_for(mission)
         return replace(
@@ -50,7 +47,7 @@ class DeliveryTask:
         places = self._mission(arena).places.values()
         return [pose for place in places for pose in place.poses]
 
-    def reference_length(self, scenario: "Scenario", arena: Arena) -> Optional[float]:
+    def reference_length(self, scenario: RunConditions, arena: Arena) -> Optional[float]:
         """Return the shortest path of the errand [m]; None for a mission, whose best order is not known."""
         if self.mission is not None:
             return None
@@ -78,7 +75,7 @@ class DeliveryTask:
 
 
 def run_mission(
-    scenario: "Scenario", arena: Arena, seed: int, mission: Mission, parcel: Optional[CarriedParcel] = None
+    scenario: RunConditions, arena: Arena, seed: int, mission: Mission, parcel: Optional[CarriedParcel] = None
 ) -> RunTrace:
     """Run a mission headless, with the conditions of a scenario.
 
@@ -96,7 +93,9 @@ def run_mission(
     episode = HeadlessMission(*inputs, seed=seed, parcel=parcel, conditions=_conditions(scenario))
     run = episode.run(scenario.seconds)
     return RunTrace(
-        _outcome(run, scenario.seconds),
+        outcome_of(
+            run.verdict.success, run.mission_record.collisions, run.simulated_seconds, scenario.seconds
+        ),
         _reason(run),
         run.trajectory,
         run.localization_error,
@@ -106,7 +105,7 @@ def run_mission(
     )
 
 
-def _conditions(scenario: "Scenario") -> EpisodeConditions:
+def _conditions(scenario: RunConditions) -> EpisodeConditions:
     return EpisodeConditions(
         scenario.planner, scenario.parameters, scenario.faults, scenario.simulation, scenario.start
     )
@@ -116,14 +115,6 @@ def _grid_of(arena: Arena) -> OccupancyGrid:
     if arena.grid is None:
         raise SettingsError(f"{arena.title}: the task needs a world with a map")
     return arena.grid
-
-
-def _outcome(run: EpisodeResult, seconds: float) -> str:
-    if run.verdict.success:
-        return SUCCESS
-    if collision(run.mission_record.collisions):
-        return COLLISION
-    return TIMEOUT if run.simulated_seconds > seconds else FAILURE
 
 
 def _reason(run: EpisodeResult) -> str:

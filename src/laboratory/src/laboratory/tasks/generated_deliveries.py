@@ -2,21 +2,18 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Dict, Mapping, Optional, Sequence, Tuple
+from typing import Any, Dict, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 import yaml
 
 from laboratory.tasks.deliveries import run_mission
-from laboratory.tasks.task import RunTrace
+from laboratory.tasks.task import RunConditions, RunTrace
 from laboratory.worlds.source import Arena
 from pick_objects import Delivery, Mission
 from planar import Pose2, SettingsError
 from planar.config.yaml_table import Table
 from planar.maps.places import NamedPlace
-
-if TYPE_CHECKING:
-    from laboratory.scenario.scenario import Scenario
 
 _STREAM = 43
 
@@ -31,13 +28,13 @@ class GeneratedDeliveryTask:
 
     count: int = 4
 
-    def run(self, scenario: "Scenario", arena: Arena, seed: int) -> RunTrace:
+    def run(self, scenario: RunConditions, arena: Arena, seed: int) -> RunTrace:
         return run_mission(scenario, arena, seed, self._mission(arena, seed))
 
     def required_poses(self, arena: Arena) -> Sequence[Pose2]:
         return [place.pose for place in arena.places]
 
-    def reference_length(self, scenario: "Scenario", arena: Arena) -> Optional[float]:
+    def reference_length(self, scenario: RunConditions, arena: Arena) -> Optional[float]:
         return None
 
     def files(self) -> Tuple[Path, ...]:

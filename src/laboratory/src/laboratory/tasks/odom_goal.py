@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Mapping, Optional, Sequence, Tuple
+from typing import Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from evaluation.verdict import collision
 from headless_mission import NAVIGATION_CONFIG, EpisodeConditions
 from headless_mission.navigation import NavigationHooks
 from headless_mission.observers import ContactObserver
-from laboratory.tasks.task import COLLISION, FAILURE, SUCCESS, TIMEOUT, RunTrace
+from laboratory.tasks.task import COLLISION, FAILURE, SUCCESS, TIMEOUT, RunConditions, RunTrace
 from laboratory.worlds.barn import score
 from laboratory.worlds.source import Arena
 from move_base_lite import Status
@@ -19,9 +19,6 @@ from planar.config.yaml_table import Table
 from planar.maps.places import parse_pose
 from sim_bridge import Episode, EpisodeHooks, Simulation, StepResult, robot_named
 from sim_bridge.faults import FaultInjector
-
-if TYPE_CHECKING:
-    from laboratory.scenario.scenario import Scenario
 
 
 @dataclass(frozen=True)
@@ -36,7 +33,7 @@ class OdomGoalTask:
     goal: Pose2
     radius: float = 1.0
 
-    def run(self, scenario: "Scenario", arena: Arena, seed: int) -> RunTrace:
+    def run(self, scenario: RunConditions, arena: Arena, seed: int) -> RunTrace:
         conditions = EpisodeConditions(scenario.planner, scenario.parameters)
         settings = conditions.navigation(navigation_config(scenario.robot))
         faults = FaultInjector(scenario.faults, seed)
@@ -68,7 +65,7 @@ class OdomGoalTask:
     def required_poses(self, arena: Arena) -> Sequence[Pose2]:
         return ()
 
-    def reference_length(self, scenario: "Scenario", arena: Arena) -> Optional[float]:
+    def reference_length(self, scenario: RunConditions, arena: Arena) -> Optional[float]:
         return arena.reference_length
 
     def files(self) -> Tuple[Path, ...]:

@@ -6,15 +6,14 @@ of a scenario and an entry in laboratory.scenario.registry.
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Mapping, Optional, Protocol, Sequence, Tuple
+from typing import Any, Mapping, Optional, Protocol, Sequence, Tuple
 
 import numpy as np
 
 from laboratory.worlds.source import Arena
 from planar import Pose2
-
-if TYPE_CHECKING:
-    from laboratory.scenario.scenario import Scenario
+from sim_bridge import SimulationSettings
+from sim_bridge.faults import Fault
 
 SUCCESS, FAILURE, COLLISION, TIMEOUT, ERROR = OUTCOMES = (
     "success",
@@ -52,16 +51,57 @@ class RunTrace:
     people_at_fault: Sequence[str] = ()
 
 
+class RunConditions(Protocol):
+    """What a task uses of its Scenario; see there."""
+
+    @property
+    def robot(self) -> str: ...
+
+    @property
+    def start(self) -> Pose2: ...
+
+    @property
+    def simulation(self) -> SimulationSettings: ...
+
+    @property
+    def faults(self) -> Tuple[Fault, ...]: ...
+
+    @property
+    def planner(self) -> str: ...
+
+    @property
+    def parameters(self) -> Mapping[str, Any]: ...
+
+    @property
+    def seconds(self) -> float: ...
+
+
+def outcome_of(success: bool, collisions: Sequence[str], simulated_seconds: float, limit: float) -> str:
+    """Return the outcome of a mission.
+
+    Args:
+        success: Whether the verdict is a success.
+        collisions: What the robot collided with.
+        simulated_seconds: Duration of the run [s].
+        limit: Time limit [s].
+    """
+    if success:
+        return SUCCESS
+    if collisions:
+        return COLLISION
+    return TIMEOUT if simulated_seconds > limit else FAILURE
+
+
 class Task(Protocol):
     """A task in an arena. Runs with equal scenario and seed are equal to the last bit."""
 
-    def run(self, scenario: "Scenario", arena: Arena, seed: int) -> RunTrace:
+    def run(self, scenario: RunConditions, arena: Arena, seed: int) -> RunTrace:
         """Run the task. Raises PlanarError if that is impossible."""
 
     def required_poses(self, arena: Arena) -> Sequence[Pose2]:
         """Return poses in the world frame that must stay free of boxes and reachable."""
 
-    def reference_length(self, scenario: "Scenario", arena: Arena) -> Optional[float]:
+    def reference_length(self, scenario: RunConditions, arena: Arena) -> Optional[float]:
         """Return the length of the shortest path that completes the task [m], if known."""
 
     def files(self) -> Tuple[Path, ...]:

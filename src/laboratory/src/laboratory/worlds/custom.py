@@ -1,14 +1,19 @@
 """Custom world generators: ``world: {my_package.my_module/MyWorlds: {rooms: 3}}`` in a scenario."""
 
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any, Protocol, Tuple
+from typing import Any, Iterable, Protocol, Tuple
 
 from laboratory.worlds.source import Arena
 from planar import PlanarError
 from planar.config.settings import settings_from
 from planar.config.yaml_table import Table
-from planar.plugins import PluginContract, PluginError, load_plugin, source_files
+from planar.extensions import (
+    ExtensionPoint,
+    InvalidAnswer,
+    PluginError,
+    source_files,
+)
 from sim_bridge import WorldError
 
 
@@ -20,7 +25,27 @@ class WorldGenerator(Protocol):
         ...
 
 
-CONTRACT = PluginContract("world generator", WorldGenerator, None, "laboratory.worlds")
+def _requirements(found: Any) -> Iterable[str]:
+    parameters = getattr(found, "__dataclass_params__", None)
+    if parameters is None or not parameters.frozen:
+        yield "it is not a frozen dataclass"
+
+
+def _checked(arena: Any, seed: int) -> Arena:
+    if not isinstance(arena, Arena):
+        raise InvalidAnswer(f"returned a {type(arena).__name__}, expected an Arena")
+    return arena
+
+
+CONTRACT: ExtensionPoint[WorldGenerator] = ExtensionPoint(
+    "world generator",
+    WorldGenerator,
+    "laboratory.worlds",
+    WorldError,
+    passes=(PlanarError,),
+    answers={"arena": _checked},
+    requirements=_requirements,
+)
 
 
 @dataclass(frozen=True)
@@ -36,15 +61,7 @@ class CustomWorlds:
     generator: WorldGenerator
 
     def arena(self, seed: int) -> Arena:
-        try:
-            arena = self.generator.arena(seed)
-        except PlanarError:
-            raise
-        except Exception as error:
-            raise WorldError(f"{self.name} raised {type(error).__name__}: {error}") from error
-        if not isinstance(arena, Arena):
-            raise WorldError(f"{self.name} returned a {type(arena).__name__}, expected an Arena")
-        return arena
+        return CONTRACT.guarded(self.name, lambda: self.generator).arena(seed)
 
     def files(self) -> Tuple[Path, ...]:
         """Return its source files: changed code makes stored results invalid."""
@@ -75,9 +92,7 @@ def read_custom_worlds(table: Table, name: str) -> CustomWorlds:
 
 def load_generator(name: str) -> type:
     """Import a custom generator by its dotted name. Raises PluginError if it violates the contract."""
-    generator_class = load_plugin(name, CONTRACT)
+    generator_class = CONTRACT.load(name)
     if generator_class is None:
-        raise PluginError("there is no such entry point of laboratory.worlds")
-    if not (is_dataclass(generator_class) and generator_class.__dataclass_params__.frozen):  # type: ignore[attr-defined]
-        raise PluginError(f"{name} is not a world generator: it is not a frozen dataclass")
+        raise PluginError(f"there is no such entry point of {CONTRACT.group}")
     return generator_class

@@ -1,6 +1,6 @@
 """Contract checks of plugins: ``python3 -m move_base_lite.check NAME``.
 
-Each kind of plugin has a module of checks (planar.plugin_check); a check takes the Plugin.
+Each kind of plugin has a module of checks (planar.extensions.check); a check takes the Plugin.
 """
 
 from functools import partial
@@ -10,10 +10,10 @@ from move_base_lite.check import global_planners, layers, local_planners, recove
 from move_base_lite.control import LOCAL_PLANNERS
 from move_base_lite.costmap import LAYERS
 from move_base_lite.planning import GLOBAL_PLANNERS
-from move_base_lite.plugin import Registry
 from move_base_lite.recovery import RECOVERIES
 from planar.deprecation import deprecated_names
-from planar.plugin_check import Check, CheckSuite
+from planar.extensions import Registry
+from planar.extensions.check import Check, CheckSuite
 
 
 def _suite(registry: Registry[Any], *checks: Check) -> CheckSuite:

@@ -3,7 +3,7 @@
 import sys
 
 from move_base_lite.check import CHECK_SUITES
-from planar.plugin_check import run_checks
+from planar.extensions.check import run_checks
 
 if __name__ == "__main__":
     sys.exit(run_checks("move_base_lite", CHECK_SUITES))

@@ -16,9 +16,9 @@ from move_base_lite.costmap import (
 )
 from move_base_lite.costmap.layers.obstacles import SourceSettings
 from move_base_lite.costmap.window import CellBounds
-from move_base_lite.plugin import Plugin
 from planar import Pose2, grid_from_picture
-from planar.plugin_check import expect
+from planar.extensions import Plugin
+from planar.extensions.check import expect
 
 GRID = grid_from_picture("#....\n.....\n..#..", 0.2)
 WINDOW = CostmapWindow(GRID.rows, GRID.cols, GRID.resolution)

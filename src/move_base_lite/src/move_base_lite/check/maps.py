@@ -11,10 +11,10 @@ from move_base_lite.costmap import CostmapSettings, LayeredCostmap
 from move_base_lite.costmap.layers.inflation import InflationSettings
 from move_base_lite.costmap.layers.static import StaticSettings
 from move_base_lite.dynamic_obstacles import NO_DYNAMIC_OBSTACLES
-from move_base_lite.planning import Navfn, NavfnSettings
-from move_base_lite.plugin import Plugin
+from move_base_lite.planning import Navfn, NavfnSettings, PlanRequest
 from planar import Pose2, Twist2, grid_from_picture
-from planar.plugin_check import CheckFailed
+from planar.extensions import Plugin
+from planar.extensions.check import CheckFailed
 
 PERIOD = 0.1
 RADIUS = 0.2
@@ -69,6 +69,11 @@ class CheckMap:
     start_xy: Tuple[float, float]
     goal_xy: Tuple[float, float]
 
+    @property
+    def plan_request(self) -> PlanRequest:
+        """Request of a path from start to goal."""
+        return PlanRequest(self.costmap.costs, self.costmap.window, self.start_xy, self.goal_xy)
+
 
 def check_map(name: str) -> CheckMap:
     """Return the map of a name.
@@ -112,8 +117,7 @@ def context_of(costmap: LayeredCostmap, pose: Pose2, twist: Twist2 = Twist2()) -
 
 def plan_in(room: CheckMap) -> np.ndarray:
     """Plan navfn's path (N, 2) from start to goal [m]."""
-    costs, window = room.costmap.costs, room.costmap.window
-    return Navfn(NavfnSettings()).plan(costs, window, room.start_xy, room.goal_xy)
+    return Navfn(NavfnSettings()).plan(room.plan_request)
 
 
 def drive(plugin: Plugin[Any], room: CheckMap, seconds: float = 40.0) -> List[Pose2]:

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import Optional
+from typing import Any, Mapping, Optional
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from move_base_lite.control.settings import ControllerSettings
 from move_base_lite.costmap import LayeredCostmap
 from move_base_lite.errors import ControlError, ControlPluginFailed
 from planar import Pose2, Twist2, wrap
+from planar.extensions import SelectedPlugins
 
 # Heading error at which a turn in place towards the plan ends [rad].
 ALIGNED_ANGLE = 0.3
@@ -57,10 +58,17 @@ class Controller:
         settings: Settings of the local planner.
         period: Control period [s].
         planner: Local planner constructed with these settings and this period.
+        extensions: Settings of further plugins, by the parameter that selects them.
     """
 
-    def __init__(self, settings: ControllerSettings, period: float, planner: LocalPlanner):
-        self.change(settings, period, planner)
+    def __init__(
+        self,
+        settings: ControllerSettings,
+        period: float,
+        planner: LocalPlanner,
+        extensions: Mapping[str, Any] = {},
+    ):
+        self.change(settings, period, planner, extensions)
         self._progress: Optional[PathProgress] = None
         self._goal_in_map = Pose2()
         self._arrived = False
@@ -68,15 +76,23 @@ class Controller:
         self._is_turning = False
         self._commanded_omega: Optional[float] = None
 
-    def change(self, settings: ControllerSettings, period: float, planner: LocalPlanner) -> None:
-        """Replace settings and local planner; the plan stays.
+    def change(
+        self,
+        settings: ControllerSettings,
+        period: float,
+        planner: LocalPlanner,
+        extensions: Mapping[str, Any] = {},
+    ) -> None:
+        """Replace settings and plugins; the plan stays.
 
         Args:
             settings: Settings of the local planner.
             period: Control period [s].
             planner: Local planner constructed with these settings and this period.
+            extensions: Settings of further plugins, by the parameter that selects them.
         """
         self._settings, self._period, self._planner = settings, period, planner
+        self._plugins = SelectedPlugins(extensions)
 
     def set_plan(self, path_xy: np.ndarray, goal_in_map: Pose2) -> None:
         """Follow another path; a different goal resets the arrival state.

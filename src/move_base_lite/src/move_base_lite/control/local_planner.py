@@ -10,14 +10,22 @@ To add one: a module with settings (a subclass of ControllerSettings), a class a
 ``control/registry.py``. ``test/test_control_contract.py`` checks every member of the registry.
 """
 
+import math
 from dataclasses import dataclass
 from typing import Any, Optional, Protocol
 
 import numpy as np
 
+from move_base_lite.control.settings import ControllerSettings
 from move_base_lite.costmap import LayeredCostmap
+from move_base_lite.errors import ControlPluginFailed, NavigationError
+from move_base_lite.trajectory_samples import TrajectorySamples
 from planar import Pose2, Twist2
 from planar.deprecation import deprecated_names, renamed_fields
+from planar.extensions import MAX_CALL_SECONDS, ExtensionPoint, InvalidAnswer
+
+# Relative tolerance of the speed limits, for rounding.
+ROUNDING = 1e-3
 
 
 @renamed_fields(movers="dynamic_obstacles", whole="global_costmap")
@@ -56,40 +64,6 @@ class Plan:
 
     path_xy: np.ndarray
     distance_left: float
-
-
-class TrajectorySamples(Protocol):
-    """The trajectories that a local planner evaluated, for display (dwa_local_planner's point clouds).
-
-    Valid until the next control period.
-    """
-
-    @property
-    def shows_trajectories(self) -> bool:
-        """Whether the settings ask for ``trajectory_cloud``."""
-        ...
-
-    @property
-    def shows_costs(self) -> bool:
-        """Whether the settings ask for ``cost_cloud``."""
-        ...
-
-    def trajectory_points(self) -> np.ndarray:
-        """Compute the points of all valid trajectories.
-
-        Returns:
-            (M, 4), rows of x, y, yaw in the local frame, and score.
-        """
-        ...
-
-    def cell_costs(self) -> np.ndarray:
-        """Compute the costs of all reachable cells.
-
-        Returns:
-            (M, 6), rows of x, y in the local frame, cells to the plan, cells to its end, cost and weighted
-            sum.
-        """
-        ...
 
 
 @renamed_fields(exploration="trajectory_samples")
@@ -135,4 +109,32 @@ class LocalPlanner(Protocol):
         ...
 
 
+def _checked(trajectory: Trajectory, context: ControlContext, plan: Plan, limits: Twist2) -> Trajectory:
+    """Refuse an answer that the Controller cannot execute."""
+    command = trajectory.command
+    if not (math.isfinite(command.v) and math.isfinite(command.omega)):
+        raise InvalidAnswer(f"asked for {command.v} m/s, {command.omega} rad/s")
+    if command.v > limits.v * (1.0 + ROUNDING) or abs(command.omega) > limits.omega * (1.0 + ROUNDING):
+        raise InvalidAnswer(
+            f"asked for {command.v:g} m/s, {command.omega:g} rad/s, "
+            f"beyond its limits of {limits.v:g} m/s, {limits.omega:g} rad/s"
+        )
+    poses = np.asarray(trajectory.poses)
+    if not (poses.ndim == 2 and poses.shape[1] == 3 and len(poses) and np.isfinite(poses).all()):
+        raise InvalidAnswer("gave poses that are not finite or not of the shape (N, 3)")
+    return trajectory
+
+
+CONTRACT: ExtensionPoint[LocalPlanner] = ExtensionPoint(
+    "local planner",
+    LocalPlanner,
+    "move_base_lite.local_planners",
+    ControlPluginFailed,
+    passes=(NavigationError,),
+    answers={"follow": _checked},
+    max_seconds=MAX_CALL_SECONDS,
+    is_lazy=True,
+    settings=ControllerSettings,
+    parameter="base_local_planner",
+)
 __getattr__ = deprecated_names(__name__, {"Situation": "ControlContext", "Exploration": "TrajectorySamples"})

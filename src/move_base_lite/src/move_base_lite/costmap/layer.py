@@ -17,16 +17,18 @@ Plugin, and add it to ``costmap/registry.py``. ``test/test_costmap_layers.py`` c
 
 import warnings
 from dataclasses import dataclass
-from typing import Any, Optional
+from typing import Any, Iterable, Optional
 
 import numpy as np
 
 from move_base_lite.costmap.footprint import Footprint
 from move_base_lite.costmap.observation import Observation
 from move_base_lite.costmap.window import NO_CELLS, CellBounds, CostmapWindow
+from move_base_lite.errors import NavigationError, PluginFailed
 from planar import OccupancyGrid, Pose2
 from planar.config.parameters import parameter
 from planar.deprecation import deprecated_names
+from planar.extensions import MAX_CALL_SECONDS, ExtensionPoint
 
 
 @dataclass(frozen=True)
@@ -173,4 +175,21 @@ def accept_note(layer: type) -> None:
         layer.add_observation = own["note"]  # type: ignore[attr-defined]
 
 
+def _requirements(found: type) -> Iterable[str]:
+    if not issubclass(found, Layer):
+        accept_note(found)
+    return ()
+
+
+CONTRACT: ExtensionPoint[Layer] = ExtensionPoint(
+    "costmap layer",
+    Layer,
+    "move_base_lite.costmap_layers",
+    PluginFailed,
+    passes=(NavigationError,),
+    writable=frozenset({"costs"}),
+    max_seconds=MAX_CALL_SECONDS,
+    settings=LayerSettings,
+    requirements=_requirements,
+)
 __getattr__ = deprecated_names(__name__, {"Placement": "CostmapPlacement", "Site": "LayerContext"})

@@ -1,18 +1,24 @@
 """Components of the Navigator: global planner, controller, costmaps and the tracker of moving obstacles."""
 
-from typing import Optional, Sequence, Tuple
+from typing import Any, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 
 from move_base_lite.config import NavigatorSettings
-from move_base_lite.control import LOCAL_PLANNERS, ControlContext, Controller
+from move_base_lite.control import (
+    LOCAL_PLANNERS,
+    ControlContext,
+    Controller,
+    ControllerSettings,
+    LocalPlanner,
+)
 from move_base_lite.costmap import Observation
 from move_base_lite.dynamic_obstacles import DynamicObstacleTracker
 from move_base_lite.navigator.costmaps import Costmaps
 from move_base_lite.navigator.inputs import RobotState
 from move_base_lite.navigator.motion_prediction import predict_motion
 from move_base_lite.navigator.zones import Zones
-from move_base_lite.planning import GLOBAL_PLANNERS
+from move_base_lite.planning import GLOBAL_PLANNERS, PlanRequest
 from planar import OccupancyGrid, Pose2, Twist2
 
 
@@ -54,17 +60,24 @@ class NavigatorComponents:
 
     def reset_controller(self) -> None:
         """Replace the controller, which keeps state of the goal."""
-        settings = self.settings.controller
-        self.controller = Controller(settings, self.period, LOCAL_PLANNERS.make(settings, self.period))
+        self.controller = Controller(*self._control())
 
     def update_settings(self, settings: NavigatorSettings) -> None:
         """Apply other settings; the plan in use stays."""
-        before, self.settings = (self.settings.controller, self.period), settings
+        before, self.settings = self._control_settings, settings
         self.planner = GLOBAL_PLANNERS.make(settings.planner)
-        if (settings.controller, self.period) != before:
-            planner = LOCAL_PLANNERS.make(settings.controller, self.period)
-            self.controller.change(settings.controller, self.period, planner)
+        if self._control_settings != before:
+            self.controller.change(*self._control())
         self.costmaps.update_settings(settings)
+
+    @property
+    def _control_settings(self) -> Tuple[ControllerSettings, float, Mapping[str, Any]]:
+        return self.settings.controller, self.period, self.settings.extensions
+
+    def _control(self) -> Tuple[ControllerSettings, float, LocalPlanner, Mapping[str, Any]]:
+        """Arguments of the Controller, with a new local planner."""
+        settings, period, extensions = self._control_settings
+        return settings, period, LOCAL_PLANNERS.make(settings, period), extensions
 
     @property
     def period(self) -> float:
@@ -104,9 +117,8 @@ class NavigatorComponents:
         """
         costmap = self.costmaps.global_costmap
         start_xy: Tuple[float, float] = (start_in_map.x, start_in_map.y)
-        return self.planner.plan(
-            costmap.costs, costmap.window, start_xy, (goal_in_map.x, goal_in_map.y), tolerance
-        )
+        goal_xy = (goal_in_map.x, goal_in_map.y)
+        return self.planner.plan(PlanRequest(costmap.costs, costmap.window, start_xy, goal_xy, tolerance))
 
     def control_context(self, state: RobotState) -> ControlContext:
         """Predict the inputs of the local planner for the time at which its command takes effect.

@@ -5,7 +5,12 @@ from typing import Any, Dict, List, Mapping, Tuple, Union
 
 from move_base_lite.config import MoveBaseSettings, NavigatorSettings
 from move_base_lite.parameters.costmaps import costmap_settings
-from move_base_lite.parameters.planners import controller_settings, planner_settings
+from move_base_lite.parameters.planners import (
+    REGISTRIES,
+    controller_settings,
+    other_settings,
+    planner_settings,
+)
 from move_base_lite.parameters.reader import ParameterReader, subtree
 from move_base_lite.parameters.recoveries import recovery_settings
 from planar.config.yaml_table import read_table
@@ -13,7 +18,7 @@ from planar.config.yaml_table import read_table
 # Parameters that are accepted without effect, or read elsewhere: for holonomic robots, for details of the
 # official code, or unused there.
 _MOVE_BASE_IGNORED = {
-    "base_global_planner", "base_local_planner", "recovery_behaviors", "latch_xy_goal_tolerance",
+    "recovery_behaviors", "latch_xy_goal_tolerance",
     "strict_params", "zones_file", "footprint", "robot_radius", "footprint_padding", "obstacle_range",
      "raytrace_range", "actionlib_status_frequency", "status_list_timeout",
 }  # fmt: skip
@@ -62,7 +67,7 @@ def settings_from_parameters(
         SettingsError: A value is invalid; the text states the full name of the parameter.
     """
     reader = ParameterReader(where, is_lenient)
-    move_base = reader.read(MoveBaseSettings, parameters, "", _MOVE_BASE_IGNORED)
+    move_base = reader.read(MoveBaseSettings, parameters, "", {*_MOVE_BASE_IGNORED, *REGISTRIES})
     costmaps = {
         name: costmap_settings(reader, subtree(parameters, name), name, parameters)
         for name in ("global_costmap", "local_costmap")
@@ -71,6 +76,7 @@ def settings_from_parameters(
         move_base=move_base,
         planner=planner_settings(reader, parameters),
         controller=controller_settings(reader, parameters),
+        extensions=other_settings(reader, parameters),
         recoveries=recovery_settings(reader, parameters, move_base, costmaps["local_costmap"]),
         **costmaps,
     )

@@ -10,8 +10,9 @@ from move_base_lite.costmap.layers.inflation import INFLATION, InflationSettings
 from move_base_lite.costmap.layers.obstacles import OBSTACLES, VOXEL, ObstacleSettings, SourceSettings
 from move_base_lite.costmap.layers.static import STATIC, StaticSettings
 from move_base_lite.parameters.reader import ParameterReader, Tree, parameter_names, subtree
-from move_base_lite.plugin import Plugin
 from planar import SettingsError
+from planar.config.bounded_yaml import load_yaml
+from planar.extensions import Plugin
 
 # Parameters that costmaps inherit from move_base's namespace.
 INHERITED = ("footprint", "robot_radius", "footprint_padding")
@@ -163,7 +164,7 @@ def parse_footprint(value: Any, name: str) -> Tuple[Tuple[float, float], ...]:
         SettingsError: The value is not a list of points.
     """
     try:
-        points = yaml.safe_load(value) if isinstance(value, str) else value
+        points = load_yaml(value) if isinstance(value, str) else value
         return tuple((float(x), float(y)) for x, y in points)
-    except (yaml.YAMLError, TypeError, ValueError, OverflowError, RecursionError):
+    except (yaml.YAMLError, TypeError, ValueError, OverflowError):
         raise SettingsError(f"{name} must be a list of points [x, y], got {value!r}") from None

@@ -5,17 +5,16 @@ from typing import Any, Dict, TypeVar
 from move_base_lite.control import LOCAL_PLANNERS, ControllerSettings
 from move_base_lite.parameters.reader import ParameterReader, Tree, subtree
 from move_base_lite.planning import GLOBAL_PLANNERS, PlannerSettings
-from move_base_lite.plugin import Plugin, Registry
+from planar.extensions import Plugin, Registry, registries_of
 
 T = TypeVar("T")
-GLOBAL_KEY, LOCAL_KEY = "base_global_planner", "base_local_planner"
 # Registries by the parameter that selects a plugin.
-PLANNERS: Dict[str, Registry[Any]] = {GLOBAL_KEY: GLOBAL_PLANNERS, LOCAL_KEY: LOCAL_PLANNERS}
+REGISTRIES: Dict[str, Registry[Any]] = registries_of("move_base_lite")
 
 
 def controller_settings(reader: ParameterReader, parameters: Tree) -> ControllerSettings:
     """Read the settings of the selected local planner."""
-    planner = _selected(reader, parameters, LOCAL_KEY, LOCAL_PLANNERS)
+    planner = _selected(reader, parameters, LOCAL_PLANNERS)
     values = dict(subtree(parameters, planner.short_name))
     if "latch_xy_goal_tolerance" in parameters:
         values.setdefault("latch_xy_goal_tolerance", parameters["latch_xy_goal_tolerance"])
@@ -24,18 +23,31 @@ def controller_settings(reader: ParameterReader, parameters: Tree) -> Controller
 
 def planner_settings(reader: ParameterReader, parameters: Tree) -> PlannerSettings:
     """Read the settings of the selected global planner."""
-    planner = _selected(reader, parameters, GLOBAL_KEY, GLOBAL_PLANNERS)
-    return reader.read_plugin(planner, subtree(parameters, planner.short_name), planner.short_name + "/")
+    return selected_settings(reader, parameters, GLOBAL_PLANNERS)
 
 
-def _selected(reader: ParameterReader, parameters: Tree, key: str, registry: Registry[T]) -> Plugin[T]:
-    """Find the selected planner; the default replaces an unknown one, with a warning."""
-    default = registry.members[0]
+def other_settings(reader: ParameterReader, parameters: Tree) -> Dict[str, Any]:
+    """Read the settings of all selected plugins but the planners, by the parameter that selects them."""
+    return {
+        key: selected_settings(reader, parameters, registry)
+        for key, registry in REGISTRIES.items()
+        if registry not in (GLOBAL_PLANNERS, LOCAL_PLANNERS)
+    }
+
+
+def selected_settings(reader: ParameterReader, parameters: Tree, registry: Registry[Any]) -> Any:
+    """Read the settings of the plugin that is selected from a registry, from the namespace of its name."""
+    plugin = _selected(reader, parameters, registry)
+    return reader.read_plugin(plugin, subtree(parameters, plugin.short_name), plugin.short_name + "/")
+
+
+def _selected(reader: ParameterReader, parameters: Tree, registry: Registry[T]) -> Plugin[T]:
+    """Find the selected plugin; the default replaces an unknown one, with a warning."""
+    default, key = registry.members[0], registry.point.parameter
     name = str(parameters.get(key, default.name))
-    planner = reader.find(registry, name, key)
-    if planner is None:
-        kind = key.split("_")[1]
+    plugin = reader.find(registry, name, key)
+    if plugin is None:
         reader.warnings.append(
-            f"{reader.where}{key}: unknown {kind} planner {name}, {default.name} is used instead"
+            f"{reader.where}{key}: unknown {registry.point.kind} {name}, {default.name} is used instead"
         )
-    return planner or default
+    return plugin or default

@@ -2,11 +2,10 @@
 
 from typing import Any, Dict, Iterable, List, Mapping, Optional, Type, TypeVar
 
-from move_base_lite.plugin import Plugin, Registry
 from planar.config.hints import hint
 from planar.config.parameters import parameters_of
 from planar.config.settings import settings_from
-from planar.plugins import PluginError
+from planar.extensions import Plugin, PluginError, Registry
 
 Tree = Mapping[str, Any]
 T = TypeVar("T")

@@ -7,10 +7,10 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 from move_base_lite.config import MoveBaseSettings
 from move_base_lite.costmap import CostmapSettings
 from move_base_lite.parameters.costmaps import INHERITED, layer_plugins, with_plugin_list
-from move_base_lite.parameters.planners import PLANNERS
+from move_base_lite.parameters.planners import REGISTRIES
 from move_base_lite.parameters.reader import ParameterReader, Tree, subtree
-from move_base_lite.plugin import Plugin
 from planar.config.parameters import DynamicParameter, dynamic_parameters_of
+from planar.extensions import Plugin
 
 COSTMAPS = ("global_costmap", "local_costmap")
 # Parameters that a namespace inherits from move_base's own.
@@ -27,8 +27,7 @@ def reconfigure_servers(parameters: Tree) -> Dict[str, List[Tuple[DynamicParamet
         Parameters with their present values, by the namespace of the server.
     """
     planner_choices = [
-        DynamicParameter(key, registry.names[0], key.replace("_", " ")[5:])
-        for key, registry in PLANNERS.items()
+        DynamicParameter(key, registry.names[0], registry.point.kind) for key, registry in REGISTRIES.items()
     ]
     found = {"": _with_values(parameters, "", [*planner_choices, *dynamic_parameters_of(MoveBaseSettings)])}
     for costmap in COSTMAPS:
@@ -36,7 +35,7 @@ def reconfigure_servers(parameters: Tree) -> Dict[str, List[Tuple[DynamicParamet
         values = with_plugin_list(subtree(parameters, costmap), f"{costmap}/")
         for layer, kind in layer_plugins(ParameterReader(""), values, costmap).items():
             found[f"{costmap}/{layer}"] = _with_values(parameters, f"{costmap}/{layer}", kind.tunables, kind)
-    for key, registry in PLANNERS.items():
+    for key, registry in REGISTRIES.items():
         planner = registry.find(str(parameters.get(key, registry.names[0])), is_package_needed=False)
         if planner is not None and planner.tunables:
             name = planner.short_name

@@ -6,11 +6,11 @@ from move_base_lite.config import MoveBaseSettings
 from move_base_lite.costmap import CostmapSettings, footprint_from
 from move_base_lite.parameters.costmaps import layer_plugins, with_plugin_list
 from move_base_lite.parameters.reader import ParameterReader, Tree, parameter_names, renamed, subtree
-from move_base_lite.plugin import Plugin
 from move_base_lite.recovery import RECOVERIES, NamedRecovery, RecoveryBehavior
 from move_base_lite.recovery.clear_costmap import CLEAR_COSTMAP
 from move_base_lite.recovery.rotate import ROTATE
 from planar import SettingsError
+from planar.extensions import Plugin
 
 
 def recovery_settings(

@@ -8,13 +8,17 @@ To add one: a module with settings (a subclass of PlannerSettings), a class and 
 ``planning/registry.py``. ``test/test_planner.py`` checks every member of the registry.
 """
 
+import inspect
+import warnings
 from dataclasses import dataclass
-from typing import Any, Optional, Protocol, Tuple
+from typing import Any, Iterable, Optional, Protocol, Tuple
 
 import numpy as np
 
 from move_base_lite.costmap import CostmapWindow
+from move_base_lite.errors import NavigationError, PlanningPluginFailed
 from planar.config.parameters import Interval, at_least, check_parameters, parameter
+from planar.extensions import MAX_CALL_SECONDS, ExtensionPoint, InvalidAnswer
 
 ORIENTATIONS = (
     "of the poses: 0 none, 1 forward (GlobalPlanner's), 2 interpolated, 3 forward then interpolated, "
@@ -59,6 +63,26 @@ class Potential:
     at_goal: float
 
 
+@dataclass(frozen=True, eq=False)
+class PlanRequest:
+    """What a global planner is asked for.
+
+    Attributes:
+        costs: (rows, cols), uint8, values as in ``costmap/costs.py``; read-only.
+        window: Position and resolution of the grid.
+        start_xy: Start in the window's frame [m]; the nearest free cell within 0.5 m may replace it.
+        goal_xy: Goal in the window's frame [m].
+        tolerance: Distance from a blocked goal within which the nearest free cell replaces it [m]; the
+            settings' ``default_tolerance`` if that is larger.
+    """
+
+    costs: np.ndarray
+    window: CostmapWindow
+    start_xy: Tuple[float, float]
+    goal_xy: Tuple[float, float]
+    tolerance: float = 0.0
+
+
 class GlobalPlanner(Protocol):
     """Plans paths; constructed as ``make(settings)``. The costmap is an argument of each call.
 
@@ -71,23 +95,11 @@ class GlobalPlanner(Protocol):
 
     def __init__(self, settings: Any): ...
 
-    def plan(
-        self,
-        costs: np.ndarray,
-        window: CostmapWindow,
-        start_xy: Tuple[float, float],
-        goal_xy: Tuple[float, float],
-        tolerance: float = 0.0,
-    ) -> np.ndarray:
+    def plan(self, request: PlanRequest) -> np.ndarray:
         """Plan a path that enters no cell with a cost of INSCRIBED or more, except to leave an obstacle.
 
         Args:
-            costs: (rows, cols), uint8, values as in ``costmap/costs.py``; must not be modified.
-            window: Position and resolution of the grid.
-            start_xy: Start in the window's frame [m]; the nearest free cell within 0.5 m may replace it.
-            goal_xy: Goal in the window's frame [m].
-            tolerance: Distance from a blocked goal within which the nearest free cell replaces it [m]; the
-                settings' ``default_tolerance`` if that is larger.
+            request: Costmap, start and goal.
 
         Returns:
             Path (N, 2), N > 1, from start to goal in small steps [m].
@@ -99,3 +111,44 @@ class GlobalPlanner(Protocol):
             NoPath: No path connects start and goal. The texts of all four state the position.
         """
         ...
+
+
+def _checked(path_xy: np.ndarray, *given: Any) -> np.ndarray:
+    """Refuse an answer that the robot cannot follow."""
+    path_xy = np.asarray(path_xy, float)
+    if not (path_xy.ndim == 2 and path_xy.shape[1:] == (2,) and len(path_xy) > 1):
+        raise InvalidAnswer(f"gave a path of the shape {path_xy.shape}, not (N, 2) with N > 1")
+    if not np.isfinite(path_xy).all():
+        raise InvalidAnswer("gave a path that is not finite")
+    return path_xy
+
+
+def _requirements(found: Any) -> Iterable[str]:
+    """Let planners from before there were requests take one; they have five arguments."""
+    plan = getattr(found, "plan", None)
+    try:
+        inspect.signature(plan).bind("self", "costs", "window", "start_xy", "goal_xy")  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        return ()
+    warnings.warn(
+        f"{found.__module__}.{found.__name__}.plan(costs, window, ...) is deprecated; take a PlanRequest",
+        DeprecationWarning,
+        stacklevel=2,
+    )
+    found.plan = lambda self, request: plan(self, *vars(request).values())  # type: ignore[misc]
+    return ()
+
+
+CONTRACT: ExtensionPoint[GlobalPlanner] = ExtensionPoint(
+    "global planner",
+    GlobalPlanner,
+    "move_base_lite.global_planners",
+    PlanningPluginFailed,
+    passes=(NavigationError,),
+    answers={"plan": _checked},
+    max_seconds=MAX_CALL_SECONDS,
+    is_lazy=True,
+    settings=PlannerSettings,
+    requirements=_requirements,
+    parameter="base_global_planner",
+)

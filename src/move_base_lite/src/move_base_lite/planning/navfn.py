@@ -11,14 +11,15 @@ from move_base_lite.planning.global_planner import (
     ORIENTATIONS,
     GlobalPlanner,
     PlannerSettings,
+    PlanRequest,
     Potential,
 )
 from move_base_lite.planning.nearest import Cell, passable_ends
 from move_base_lite.planning.shortcuts import shorten
 from move_base_lite.planning.wavefront import propagate_wavefront, trace_path, traversal_costs
-from move_base_lite.plugin import Plugin
 from planar.config.parameters import DynamicParameter, Interval, at_least, parameter
 from planar.config.settings import check
+from planar.extensions import Plugin
 
 STEP_CELLS = 0.5
 # Maximum length of a shortcut [cells]: practically unlimited, or just smoothing of the gradient's steps.
@@ -79,25 +80,19 @@ class Navfn:
         self._settings = settings
         self.potential: Optional[Potential] = None
 
-    def plan(
-        self,
-        costs: np.ndarray,
-        window: CostmapWindow,
-        start_xy: Tuple[float, float],
-        goal_xy: Tuple[float, float],
-        tolerance: float = 0.0,
-    ) -> np.ndarray:
+    def plan(self, request: PlanRequest) -> np.ndarray:
         """Plan a path (see GlobalPlanner.plan).
 
         A blocked start or goal is replaced by a cell that is connected to the other one, if possible.
         """
-        settings = self._settings
+        settings, costs, window = self._settings, request.costs, request.window
+        start_xy, goal_xy = request.start_xy, request.goal_xy
         traversal = traversal_costs(
             costs, settings.allow_unknown, settings.neutral_cost, settings.cost_factor, settings.lethal_cost
         )
         start = _cell_in_map(window, start_xy, "robot")
         goal = _cell_in_map(window, goal_xy, "goal")
-        tolerance_cells = max(tolerance, settings.default_tolerance) / window.resolution
+        tolerance_cells = max(request.tolerance, settings.default_tolerance) / window.resolution
         start_cells = START_TOLERANCE / window.resolution
         free_start, free_goal = passable_ends(traversal, start, goal, start_cells, tolerance_cells)
         if free_start is None:

@@ -8,11 +8,14 @@ To add a behaviour to this package, write a module with settings, a class and it
 ``recovery/registry.py``. ``test/test_recovery.py`` checks the contract.
 """
 
+import math
 from dataclasses import dataclass
 from typing import Any, Callable, Optional, Protocol
 
 from move_base_lite.costmap import LayeredCostmap
+from move_base_lite.errors import NavigationError, PluginFailed
 from planar import Pose2, Twist2
+from planar.extensions import MAX_CALL_SECONDS, ExtensionPoint, InvalidAnswer
 
 
 @dataclass(frozen=True)
@@ -73,6 +76,26 @@ class RecoveryBehavior(Protocol):
             The velocity command for this period; None when the behaviour has finished.
         """
         ...
+
+
+def _checked(command: Optional[Twist2], context: RecoveryContext) -> Optional[Twist2]:
+    if command is not None and not (math.isfinite(command.v) and math.isfinite(command.omega)):
+        raise InvalidAnswer(f"asked for {command.v} m/s, {command.omega} rad/s")
+    return command
+
+
+CONTRACT: ExtensionPoint[RecoveryBehavior] = ExtensionPoint(
+    "recovery behaviour",
+    RecoveryBehavior,
+    "move_base_lite.recovery_behaviors",
+    PluginFailed,
+    passes=(NavigationError,),
+    answers={"step": _checked},
+    writable=frozenset({"context"}),
+    max_seconds=MAX_CALL_SECONDS,
+    is_lazy=True,
+    settings=RecoverySettings,
+)
 
 
 @dataclass(frozen=True)

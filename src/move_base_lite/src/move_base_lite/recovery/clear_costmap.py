@@ -3,11 +3,11 @@
 from dataclasses import dataclass
 from typing import Optional
 
-from move_base_lite.plugin import Plugin
 from move_base_lite.recovery.behavior import RecoveryBehavior, RecoveryContext
 from planar import Twist2
 from planar.config.parameters import at_least, check_parameters, parameter
 from planar.config.settings import check
+from planar.extensions import Plugin
 
 LOCAL, GLOBAL, BOTH = "local", "global", "both"
 

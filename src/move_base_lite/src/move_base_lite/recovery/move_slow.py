@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 from typing import Optional
 
-from move_base_lite.plugin import Plugin
 from move_base_lite.recovery.behavior import RecoveryBehavior, RecoveryContext, SpeedLimit
 from planar import Twist2
 from planar.config.parameters import POSITIVE, at_least, check_parameters, parameter
+from planar.extensions import Plugin
 
 
 @dataclass(frozen=True)

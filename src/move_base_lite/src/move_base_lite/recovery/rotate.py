@@ -4,10 +4,10 @@ import math
 from dataclasses import dataclass
 from typing import Optional
 
-from move_base_lite.plugin import Plugin
 from move_base_lite.recovery.behavior import RecoveryBehavior, RecoveryContext
 from planar import Twist2, wrap
 from planar.config.parameters import POSITIVE, check_parameters, parameter
+from planar.extensions import Plugin
 
 LOOKAHEAD_ANGLE = 0.4
 # After so much commanded rotation [rad], the robot must have turned by this fraction of it, or it is stuck.

@@ -10,10 +10,10 @@ from geometry_msgs.msg import Polygon
 
 from move_base_lite.config import NavigatorSettings
 from move_base_lite.parameters import settings_from_parameters
-from move_base_lite.parameters.planners import PLANNERS
+from move_base_lite.parameters.planners import REGISTRIES
 from move_base_lite.parameters.reconfigure import reconfigure_servers, with_changes
 from planar import SettingsError
-from planar_ros.node.reconfigure import ReconfigureServer
+from planar_ros.node.parameters import ReconfigureServer
 
 
 class ReconfigureServers:
@@ -49,7 +49,7 @@ class ReconfigureServers:
         where = rospy.get_name() + "/"
         with self._lock:
             try:
-                for key, registry in PLANNERS.items():
+                for key, registry in REGISTRIES.items():
                     if key in requested and registry.find(requested[key]) is None:
                         known = ", ".join(registry.names)
                         raise SettingsError(f"{where}{key} must be one of {known}, got {requested[key]}")
@@ -62,7 +62,7 @@ class ReconfigureServers:
                 }
             self._parameters = parameters
             self._apply(settings)
-        if set(PLANNERS) & set(requested):
+        if set(REGISTRIES) & set(requested):
             threading.Thread(target=self.serve, daemon=True).start()
         return requested
 

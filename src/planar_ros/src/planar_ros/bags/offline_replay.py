@@ -1,8 +1,8 @@
 """Shared parts of the commands that process a bag offline (amcl_lite_replay, slam_lite_replay)."""
 
-import argparse
 import ctypes
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Callable, Iterable, Iterator, List, Optional, Type, TypeVar
 
@@ -14,6 +14,7 @@ from planar.files.writing import tum_text
 from planar_ros.bags.bag_reader import BagError
 from planar_ros.bags.scan_log import LoggedScan, ScanLog
 from planar_ros.node.entry import use_one_blas_thread
+from supervision.command_line import argument, option, parse
 
 T = TypeVar("T")
 # Parameters of mallopt, from malloc.h.
@@ -22,29 +23,34 @@ _M_MMAP_THRESHOLD, _M_TRIM_THRESHOLD = -3, -1
 _MMAP_BYTES, _TRIM_BYTES = 2**20, 2**22
 
 
-def add_replay_options(parser: argparse.ArgumentParser, node: str) -> None:
-    """Add the options that all replay commands have.
+@dataclass(frozen=True)
+class ReplayOptions:
+    """Process a recorded bag, without a ROS master."""
 
-    Args:
-        parser: Parser of the command.
-        node: Name of the node whose parameters ``--config`` holds, for the help text.
-    """
-    parser.add_argument("bag", metavar="BAG", help="a ROS 1 bag with scans and /tf")
-    parser.add_argument("--config", metavar="YAML", type=Path, help=f"parameters of {node}")
-    parser.add_argument("--scan_topic", default="/scan", help="default: /scan")
-    parser.add_argument("--progress", action="store_true", help="show a progress bar")
+    bag: str = argument("a ROS 1 bag with scans and /tf", metavar="BAG")
+    config: Optional[Path] = option(None, "parameters of the node", type=Path, metavar="YAML")
+    scan_topic: str = option("/scan", "topic of the scans", flag="--scan_topic", metavar="TOPIC")
+    progress: bool = option(False, "show a progress bar")
+    trajectory: Optional[Path] = option(
+        None, "where to write the trajectory: a pose for every scan", type=Path, metavar="OUT.tum"
+    )
+
+
+Options = TypeVar("Options", bound=ReplayOptions)
 
 
 def run_replay(
-    parser: argparse.ArgumentParser,
-    replay: Callable[[argparse.Namespace], int],
+    kind: Type[Options],
+    program: str,
+    replay: Callable[[Options], int],
     arguments: Optional[List[str]],
 ) -> int:
     """Run a replay command.
 
     Args:
-        parser: Parser of the command.
-        replay: The command; takes the parsed arguments and returns the exit code.
+        kind: Its options.
+        program: Its name.
+        replay: The command; takes the options and returns the exit code.
         arguments: Command line arguments; None for those of the process.
 
     Returns:
@@ -53,7 +59,7 @@ def run_replay(
     use_one_blas_thread()
     unmap_large_arrays()
     try:
-        return replay(parser.parse_args(arguments))
+        return replay(parse(kind, sys.argv[1:] if arguments is None else arguments, program))
     except PlanarError as error:
         print(f"error: {error}", file=sys.stderr)
         return 2

@@ -5,13 +5,16 @@ chosen by its dotted name. Each fault of a run gets its own instance, with its s
 which may keep state. Its methods are called only while the fault is active.
 """
 
+import math
 from dataclasses import dataclass
-from typing import ClassVar, Optional, Tuple
+from typing import Any, ClassVar, Iterable, Optional, Tuple
 
 import numpy as np
 
 from planar import Pose2, Scan, Twist2
 from planar.deprecation import deprecated_names
+from planar.extensions import ExtensionPoint, InvalidAnswer
+from sim_bridge.errors import FaultError
 from sim_bridge.scene import Scene
 from sim_bridge.sensors.odometry import Odometry
 
@@ -132,3 +135,52 @@ class FaultKind:
         Args:
             context: The scene, and the robot with its true pose.
         """
+
+
+def _requirements(found: Any) -> Iterable[str]:
+    if not issubclass(found, FaultKind):
+        yield f"it is not derived from {FaultKind.__module__}.FaultKind"
+        return
+    try:
+        default, least, largest = map(float, found.strength)
+        is_valid = least <= default <= largest
+    except (TypeError, ValueError):
+        is_valid = False
+    if not is_valid:
+        yield f"strength must be (default, least, largest), got {found.strength!r}"
+
+
+def _checked(method: str, expected: type) -> Any:
+    def check(changed: Any, given: Any) -> Any:
+        if changed is not None and not isinstance(changed, expected):
+            got = type(changed).__name__
+            raise InvalidAnswer(f"{method} returned {got}, expected {expected.__name__} or None")
+        return changed
+
+    return check
+
+
+def _checked_speeds(changed: Any, left: float, right: float) -> Tuple[float, float]:
+    try:
+        speeds = float(changed[0]), float(changed[1])
+    except (TypeError, ValueError, IndexError):
+        speeds = math.nan, math.nan
+    if not all(map(math.isfinite, speeds)):
+        raise InvalidAnswer(f"wheel_speeds returned {changed!r}, expected two finite numbers")
+    return speeds
+
+
+CONTRACT: ExtensionPoint[FaultKind] = ExtensionPoint(
+    "fault",
+    FaultKind,
+    "sim_bridge.faults",
+    FaultError,
+    answers={
+        "scan": _checked("scan", Scan),
+        "odometry": _checked("odometry", Odometry),
+        "command": _checked("command", Twist2),
+        "wheel_speeds": _checked_speeds,
+    },
+    writable=frozenset({"context"}),
+    requirements=_requirements,
+)

@@ -1,14 +1,13 @@
 """All kinds of faults, by their names in files."""
 
-from typing import Dict, Optional, Type
+from typing import Any, Dict, Optional, Type
 
 import numpy as np
 
 from planar import SettingsError
 from planar.config.hints import hint
 from sim_bridge.faults import drive, home, odometry, scans
-from sim_bridge.faults.custom import GuardedFault, load_custom_kind
-from sim_bridge.faults.kind import FaultKind
+from sim_bridge.faults.kind import CONTRACT, FaultKind
 
 KINDS: Dict[str, Type[FaultKind]] = {
     "scan_stopped": scans.StoppedScan,
@@ -51,14 +50,14 @@ def kind_named(name: str) -> Type[FaultKind]:
     Raises:
         SettingsError: There is no such kind, or it does not meet the contract.
     """
-    kind = KINDS.get(name) or load_custom_kind(name)
+    kind: Any = KINDS.get(name) or CONTRACT.load(name)
     if kind is None:
         raise SettingsError(f"there is no fault {name!r}{hint(name, KINDS)}")
     return kind
 
 
 def make_fault(name: str, strength: float, rng: np.random.Generator) -> FaultKind:
-    """Instantiate a kind; a user-defined one is wrapped in a GuardedFault.
+    """Instantiate a kind; a user-defined one is guarded.
 
     Args:
         name: Name of the kind.
@@ -70,7 +69,7 @@ def make_fault(name: str, strength: float, rng: np.random.Generator) -> FaultKin
         FaultError: A user-defined kind cannot be instantiated.
     """
     kind = kind_named(name)
-    return kind(strength, rng) if name in KINDS else GuardedFault(name, kind, strength, rng)
+    return kind(strength, rng) if name in KINDS else CONTRACT.make(name, strength, rng)
 
 
 def default_strength(kind: str) -> float:

@@ -3,7 +3,7 @@
 from typing import Callable, List, Optional, Sequence, Type
 
 from planar import SettingsError
-from sim_bridge.faults.custom import GuardedFault
+from planar.extensions import class_of
 from sim_bridge.faults.injection import FaultInjector
 from sim_bridge.faults.kind import Fault, FaultKind
 from sim_bridge.faults.registry import kind_named
@@ -76,7 +76,7 @@ class RelayedFaults:
             method: ``scan``, ``odometry`` or ``command``.
         """
         active = self._injector.active(self._since_start(time))
-        return [kind for kind in active if _overrides(_class_of(kind), method)]
+        return [kind for kind in active if _overrides(class_of(kind), method)]
 
     def _since_start(self, time: float) -> float:
         if self._start is None:
@@ -90,7 +90,3 @@ class RelayedFaults:
 
 def _overrides(kind: Type[FaultKind], method: str) -> bool:
     return getattr(kind, method) is not getattr(FaultKind, method)
-
-
-def _class_of(kind: FaultKind) -> Type[FaultKind]:
-    return kind.guarded if isinstance(kind, GuardedFault) else type(kind)

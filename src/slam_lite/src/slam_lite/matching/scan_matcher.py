@@ -4,7 +4,6 @@ A custom matcher is chosen by ``matcher_plugin: my_package.my_module/MyMatcher``
 closure do not use it.
 """
 
-import copy
 import math
 import warnings
 from dataclasses import dataclass
@@ -13,8 +12,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from planar import PlanarError, Pose2
-from planar.plugins import PluginContract, errors_raised_as, load_plugin
-from slam_lite.config import MapperSettings
+from planar.extensions import ExtensionPoint, InvalidAnswer
 from slam_lite.matching.correlative import SearchWindow, search_exhaustively
 from slam_lite.matching.local_map import LocalMap, Match
 from slam_lite.matching.refinement import refine
@@ -67,7 +65,7 @@ class Prediction:
 class ScanMatcher(Protocol):
     """Matches scans to a local map; one is created for each trajectory, also after relocalization."""
 
-    def __init__(self, settings: MapperSettings): ...
+    def __init__(self, settings: Any): ...
 
     def match(self, cloud: PointCloud, local_map: LocalMap, prediction: Prediction) -> Match:
         """Find the pose near the prediction at which a scan matches the map.
@@ -86,84 +84,11 @@ class ScanMatcher(Protocol):
         ...
 
 
-CONTRACT = PluginContract("scan matcher", ScanMatcher, MapperSettings, "slam_lite.scan_matchers")
-
-
-def scan_matcher_of(settings: MapperSettings) -> ScanMatcher:
-    """Create the matcher that the settings select.
-
-    Args:
-        settings: ``matcher_plugin``, and the settings that are passed to the matcher.
-
-    Raises:
-        SettingsError: A custom matcher does not fulfil the contract.
-        MatchingError: A custom matcher cannot be created.
-    """
-    return GuardedMatcher(settings) if settings.matcher_plugin else CorrelativeMatcher(settings)
-
-
-class CorrelativeMatcher:
-    """Default matcher: exhaustive search of a window, then point-to-line refinement."""
-
-    def __init__(self, settings: MapperSettings):
-        pass
-
-    def match(self, cloud: PointCloud, local_map: LocalMap, prediction: Prediction) -> Match:
-        """Search the window exhaustively and refine the best pose (see ``ScanMatcher.match``)."""
-        predicted, variance = prediction.base_pose, prediction.variance
-        window = SearchWindow(
-            float(np.clip(3.0 * math.sqrt(variance[0]), 0.1, 0.4)),
-            float(np.clip(3.0 * math.sqrt(variance[2]), 0.1, 0.5)),
-        )
-        start = search_exhaustively(
-            cloud, local_map, predicted, window, prediction.search_variance, prediction.unseen_fraction
-        )
-        return refine(cloud, local_map, start, predicted, prediction.information)
-
-
-class GuardedMatcher:
-    """Wrapper of a custom matcher that passes read-only arguments, checks results and names it in errors."""
-
-    def __init__(self, settings: MapperSettings):
-        """Create the custom matcher.
-
-        Args:
-            settings: ``matcher_plugin``, and the settings that are passed to the matcher.
-
-        Raises:
-            SettingsError: It does not fulfil the contract.
-            MatchingError: It cannot be created.
-        """
-        self._name = settings.matcher_plugin
-        make: Any = load_plugin(self._name, CONTRACT)
-        with errors_raised_as(self._name, MatchingError):
-            self._matcher = make(settings)
-
-    def match(self, cloud: PointCloud, local_map: LocalMap, prediction: Prediction) -> Match:
-        """Call the custom matcher (see ``ScanMatcher.match``).
-
-        Raises:
-            MatchingError: It raised, or returned an invalid result.
-        """
-        with errors_raised_as(self._name, MatchingError):
-            match = self._matcher.match(_read_only(cloud), _read_only(local_map), _read_only(prediction))
-            problem = _problem_of(match)
-        if problem:
-            raise MatchingError(f"{self._name} returned {problem}")
-        return match
-
-
-def _read_only(value_object: Any) -> Any:
-    """A shallow copy with read-only arrays."""
-    copied = copy.copy(value_object)
-    for name, value in vars(value_object).items():
-        if isinstance(value, np.ndarray):
-            view = value.view()
-            view.flags.writeable = False
-            object.__setattr__(copied, name, view)
-        elif isinstance(value, LocalMap):
-            object.__setattr__(copied, name, _read_only(value))
-    return copied
+def _checked(match: Any, *given: Any) -> Match:
+    problem = _problem_of(match)
+    if problem:
+        raise InvalidAnswer(f"returned {problem}")
+    return match
 
 
 def _problem_of(match: Any) -> str:
@@ -180,3 +105,42 @@ def _problem_of(match: Any) -> str:
     if not (is_symmetric and np.linalg.eigvalsh(information)[0] >= -rounding):
         return "an information that is not symmetric and positive semi-definite"
     return "" if 0.0 <= match.response <= 1.0 else f"a response of {match.response:g}, not between 0 and 1"
+
+
+CONTRACT: ExtensionPoint[ScanMatcher] = ExtensionPoint(
+    "scan matcher", ScanMatcher, "slam_lite.scan_matchers", MatchingError, answers={"match": _checked}
+)
+
+
+def scan_matcher_of(settings: Any) -> ScanMatcher:
+    """Create the matcher that the settings select.
+
+    Args:
+        settings: MapperSettings with ``matcher_plugin``, which are passed to the matcher.
+
+    Raises:
+        SettingsError: A custom matcher does not fulfil the contract.
+        MatchingError: A custom matcher cannot be created.
+    """
+    if settings.matcher_plugin:
+        return CONTRACT.make(settings.matcher_plugin, settings)
+    return CorrelativeMatcher(settings)
+
+
+class CorrelativeMatcher:
+    """Default matcher: exhaustive search of a window, then point-to-line refinement."""
+
+    def __init__(self, settings: Any):
+        pass
+
+    def match(self, cloud: PointCloud, local_map: LocalMap, prediction: Prediction) -> Match:
+        """Search the window exhaustively and refine the best pose (see ``ScanMatcher.match``)."""
+        predicted, variance = prediction.base_pose, prediction.variance
+        window = SearchWindow(
+            float(np.clip(3.0 * math.sqrt(variance[0]), 0.1, 0.4)),
+            float(np.clip(3.0 * math.sqrt(variance[2]), 0.1, 0.5)),
+        )
+        start = search_exhaustively(
+            cloud, local_map, predicted, window, prediction.search_variance, prediction.unseen_fraction
+        )
+        return refine(cloud, local_map, start, predicted, prediction.information)

@@ -1,13 +1,13 @@
 """Offline mapping of a recorded bag: ``slam_lite_replay BAG --map OUT``."""
 
-import argparse
+from dataclasses import dataclass
 from pathlib import Path
 from typing import List, Optional
 
 from planar import PlanarError, save_map
 from planar_ros.bags.bag_reader import BagError
 from planar_ros.bags.offline_replay import (
-    add_replay_options,
+    ReplayOptions,
     load_settings,
     process_scans,
     run_replay,
@@ -18,6 +18,21 @@ from planar_ros.bags.scan_log import LoggedScan, ScanLog
 from slam_lite.config import NodeSettings
 from slam_lite.mapper import Mapper
 from slam_lite.scan_trajectory import ScanTrajectory
+from supervision.command_line import option
+
+
+@dataclass(frozen=True)
+class SlamReplay(ReplayOptions):
+    """Map a recorded bag, without a ROS master."""
+
+    map: Optional[Path] = option(None, "write OUT.pgm and OUT.yaml", type=Path, metavar="OUT")
+    pose_of: str = option(
+        "laser",
+        "frame of the trajectory's poses: laser, where the scans were taken, or base",
+        choices=("laser", "base"),
+    )
+    base_frame: str = option("base_link", "the robot's frame", flag="--base_frame", metavar="FRAME")
+    odom_frame: str = option("odom", "odometry's frame", flag="--odom_frame", metavar="FRAME")
 
 
 def main(arguments: Optional[List[str]] = None) -> int:
@@ -29,28 +44,10 @@ def main(arguments: Optional[List[str]] = None) -> int:
     Returns:
         Exit code: 0; 1 if the bag is truncated and the part before is saved; 2 if nothing was mapped.
     """
-    return run_replay(_parser(), _replay, arguments)
+    return run_replay(SlamReplay, "slam_lite_replay", _replay, arguments)
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog="slam_lite_replay", description="Map a recorded bag, without a ROS master."
-    )
-    add_replay_options(parser, "slam_gmapping")
-    parser.add_argument("--map", metavar="OUT", type=Path, help="write OUT.pgm and OUT.yaml")
-    parser.add_argument("--trajectory", metavar="OUT.tum", type=Path, help="write a pose for every scan")
-    parser.add_argument(
-        "--pose-of",
-        choices=("laser", "base"),
-        default="laser",
-        help="frame of the trajectory's poses (default: laser, where the scans were taken)",
-    )
-    parser.add_argument("--base_frame", default="base_link", help="default: base_link")
-    parser.add_argument("--odom_frame", default="odom", help="default: odom")
-    return parser
-
-
-def _replay(options: argparse.Namespace) -> int:
+def _replay(options: SlamReplay) -> int:
     mapper, trajectory = Mapper(load_settings(NodeSettings, options.config)), ScanTrajectory()
     exit_code = _work_through(options, mapper, trajectory)
     if len(trajectory) == 0:
@@ -63,7 +60,7 @@ def _replay(options: argparse.Namespace) -> int:
     return exit_code
 
 
-def _work_through(options: argparse.Namespace, mapper: Mapper, trajectory: ScanTrajectory) -> int:
+def _work_through(options: SlamReplay, mapper: Mapper, trajectory: ScanTrajectory) -> int:
     """Map all scans, and free the bag's index."""
     log = ScanLog(options.bag, options.scan_topic, options.base_frame, options.odom_frame, warn)
 
@@ -78,7 +75,7 @@ def _work_through(options: argparse.Namespace, mapper: Mapper, trajectory: ScanT
     return process_scans(log, insert, "mapping", options.progress)
 
 
-def _save(options: argparse.Namespace, mapper: Mapper, trajectory: ScanTrajectory) -> None:
+def _save(options: SlamReplay, mapper: Mapper, trajectory: ScanTrajectory) -> None:
     """Write the requested files; the map also when the trajectory cannot be written."""
     try:
         if options.trajectory:

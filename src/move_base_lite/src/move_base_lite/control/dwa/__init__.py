@@ -10,7 +10,7 @@ from move_base_lite.control.dwa.settings import (
     TrajectorySettings,
 )
 from move_base_lite.control.local_planner import LocalPlanner
-from move_base_lite.plugin import Plugin
+from planar.extensions import Plugin
 
 DWA: Plugin[LocalPlanner] = Plugin(
     "dwa_local_planner/DWAPlannerROS",

@@ -3,7 +3,7 @@
 from move_base_lite.control.local_planner import LocalPlanner
 from move_base_lite.control.mppi.planner import MppiPlanner
 from move_base_lite.control.mppi.settings import MppiSettings
-from move_base_lite.plugin import Plugin
+from planar.extensions import Plugin
 
 MPPI: Plugin[LocalPlanner] = Plugin(
     "move_base_lite/MppiPlannerROS",

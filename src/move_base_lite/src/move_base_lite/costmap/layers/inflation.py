@@ -9,8 +9,8 @@ import numpy as np
 from move_base_lite.costmap.costs import FREE, INSCRIBED, LETHAL, UNKNOWN
 from move_base_lite.costmap.layer import Layer, LayerContext, LayerSettings
 from move_base_lite.costmap.window import CellBounds, CostmapWindow
-from move_base_lite.plugin import Plugin
 from planar.config.parameters import at_least, check_parameters, parameter
+from planar.extensions import Plugin
 
 
 @dataclass(frozen=True)

@@ -12,10 +12,10 @@ from move_base_lite.costmap.layer import CostmapPlacement, Layer, LayerContext, 
 from move_base_lite.costmap.observation import Observation
 from move_base_lite.costmap.polygon import Polygon
 from move_base_lite.costmap.window import NO_CELLS, CellBounds, CostmapWindow, union
-from move_base_lite.plugin import Plugin
 from planar import Pose2
 from planar.config.parameters import POSITIVE, DynamicParameter, at_least, check_parameters, parameter
 from planar.config.settings import check
+from planar.extensions import Plugin
 
 DATA_TYPES = ("LaserScan", "PointCloud", "PointCloud2")
 OVERWRITE, MAXIMUM, IGNORE_LAYER = 0, 1, 99

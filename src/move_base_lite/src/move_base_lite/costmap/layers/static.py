@@ -9,9 +9,9 @@ from move_base_lite.costmap.costs import FREE, LETHAL, UNKNOWN
 from move_base_lite.costmap.layer import CostmapPlacement, Layer, LayerContext, LayerSettings
 from move_base_lite.costmap.resampling import resample_costs
 from move_base_lite.costmap.window import NO_CELLS, CellBounds, CostmapWindow
-from move_base_lite.plugin import Plugin
 from planar.config.parameters import Interval as ParameterBounds
 from planar.config.parameters import check_parameters, parameter
+from planar.extensions import Plugin
 
 
 @dataclass(frozen=True)
