@@ -23,7 +23,7 @@ from unittest.mock import patch
 import gymnasium
 
 import home_service_gym
-from sim_bridge import Simulation
+from sim_bridge import Episode, Simulation
 from sim_bridge.driving.drive import BASE_RATE
 from sim_bridge.simulation import ROBOT_NAME
 
@@ -97,7 +97,8 @@ def measure(name: str) -> Measurement:
     for _ in range(RESETS):  # fills the cache of paths
         env.reset(options=world)
     resets = [1e3 * cpu_seconds(lambda: env.reset(options=world)) for _ in range(RESETS)]
-    scan = simulation.step().scan
+    scan = Episode(simulation, simulation.step_seconds).step().scan
+    assert scan is not None
     env.close()
     step, bound = statistics.median(step_seconds[1:]), statistics.median(physics_seconds[1:])
     return Measurement(

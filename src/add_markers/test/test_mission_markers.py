@@ -1,5 +1,6 @@
 """A subscriber that connects while a marker changes receives complete markers, the latest last."""
 
+import copy
 import io
 import struct
 import threading
@@ -12,6 +13,7 @@ from visualization_msgs.msg import Marker
 from add_markers import MarkerSettings
 from add_markers.ros import mission_markers
 from add_markers.ros.mission_markers import MissionMarkers
+from planar import Pose2
 
 GIVING_WAY_SECONDS, DEADLINE = 0.3, 5.0
 
@@ -69,7 +71,9 @@ class Publisher:
 
 @pytest.fixture
 def markers(monkeypatch):
-    bodies = SimpleNamespace(follow=lambda objects: {})
+    bodies = SimpleNamespace(
+        follow=lambda objects: {}, room_beside=lambda robot, size: robot @ Pose2(0.5, 0.0)
+    )
     monkeypatch.setattr(mission_markers, "SimulatedBoxes", lambda settings: bodies)
     monkeypatch.setattr(mission_markers, "ReadinessMonitor", lambda conditions: None)
     monkeypatch.setattr(mission_markers, "subscribe", lambda *_, **__: None)
@@ -82,6 +86,22 @@ def mission_with_cube_at(x):
     message.objects[0].pose.position.x = x
     message.objects[0].pose.orientation.w = 1.0
     return message
+
+
+def test_an_object_that_is_set_down_is_shown_beside_the_robot_and_stays_there(markers):
+    subscriber = Subscriber()
+    markers._publisher.impl.add_connection(subscriber)
+    mission = mission_with_cube_at(1.0)
+    markers._follow(copy.deepcopy(mission))
+    mission.objects[0].is_carried = True
+    markers._follow(copy.deepcopy(mission))
+    mission.objects[0].is_carried = False
+    mission.objects[0].pose.position.x = 3.0
+    for size in (0.2, 0.3):  # another change makes it published again
+        mission.objects[0].size = size
+        markers._follow(copy.deepcopy(mission))
+    shown = [marker for marker in subscriber.markers() if marker.action == Marker.ADD]
+    assert [marker.pose.position.x for marker in shown if not marker.frame_locked] == [1.0, 3.5, 3.5]
 
 
 def test_a_marker_that_changes_while_it_is_repeated(markers, monkeypatch):

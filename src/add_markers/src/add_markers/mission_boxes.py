@@ -40,6 +40,10 @@ class MissionBoxes:
         """Set the map in which boxes are placed on free cells."""
         self._placer.grid = grid
 
+    def room_beside(self, robot: Pose2, size: float) -> Pose2:
+        """Return a free pose next to the robot in the map, for an object of that width [m]."""
+        return self._placer.room_beside(robot, size, robot)
+
     def update(self, solids: Sequence[SolidBox]) -> None:
         """Move the boxes to where they belong, if that has changed.
 

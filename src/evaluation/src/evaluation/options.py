@@ -9,17 +9,31 @@ from supervision.command_line import option, seconds, seed
 from supervision.view_options import ViewOptions
 
 ROOT = Path(__file__).resolve().parents[4]
+HOME_WORLD, HOME_MAP = ROOT / "map/home.world", ROOT / "map/home.yaml"
 RUN_SECONDS = 900.0
 # Options that are written to result.json under their names.
 RESULT_OPTIONS = ("seed", "world", "robot", "map", "mission")
+
+
+def robot_name(text: str) -> str:
+    """Return the name of a robot, or the absolute path of its file, which is read by other processes."""
+    from sim_bridge.robots import FILE_SUFFIXES  # late: imports much of the simulator
+
+    is_relative = text.endswith(FILE_SUFFIXES) and not text.startswith("~")
+    return str(Path(text).absolute()) if is_relative else text
 
 
 @dataclass(frozen=True)
 class WorldOptions:
     """World, robot and seed."""
 
-    world: Path = option(ROOT / "map/home.world", "SDF world", type=Path)
-    robot: str = option("turtlebot_lidar", "robot profile of sim_bridge", metavar="NAME")
+    world: Path = option(HOME_WORLD, "SDF world", type=Path)
+    robot: str = option(
+        "turtlebot_lidar",
+        "robot profile of sim_bridge, or a .urdf or .xacro file",
+        type=robot_name,
+        metavar="NAME|FILE",
+    )
     seed: int = option(0, "seed of all noise and particles", type=seed)
 
 
@@ -27,7 +41,12 @@ class WorldOptions:
 class HomeOptions(WorldOptions):
     """A world with a map."""
 
-    map: Path = option(ROOT / "map/home.yaml", "map of that world", type=Path)
+    map: Path = option(HOME_MAP, "map of that world", type=Path)
+
+    @property
+    def lacks_map(self) -> bool:
+        """Whether another world than the home was chosen without a map of it."""
+        return self.map is HOME_MAP and self.world.resolve() != HOME_WORLD.resolve()
 
     def files(self) -> Dict[str, Any]:
         """Return the files as arguments of launch files."""
@@ -121,11 +140,6 @@ class RunOptions(ViewOptions):
     def name(self) -> str:
         """Name of the command, which is that of its module."""
         return type(self).__module__.rpartition(".")[2]
-
-    @property
-    def is_interactive(self) -> bool:
-        """Whether Ctrl-C is the intended end of the run."""
-        return False
 
     @property
     def tool(self) -> Optional[str]:

@@ -33,7 +33,7 @@ class LocalizationHooks(EpisodeHooks):
         seed: int,
         start: Pose2,
         poses: PoseHistory,
-        on_fit: Callable[[float, float], None],
+        on_fit: Callable[[float, float], None] = lambda stamp, fit: None,
     ):
         self._settings = _settings()
         self._localizer = Localizer(grid, self._settings, np.random.default_rng(seed))

@@ -15,12 +15,13 @@ from headless_mission.boxes import BoxHooks
 from headless_mission.conditions import EpisodeConditions
 from headless_mission.errand import ErrandHooks
 from headless_mission.localization import LocalizationHooks
-from headless_mission.navigation import MoveBaseClient, NavigationHooks, command_latency, control_period
+from headless_mission.navigation import MoveBaseClient, NavigationHooks
 from headless_mission.observers import MissionObserver
 from headless_mission.result import EpisodeResult
 from pick_objects import FinishTask, Mission
 from planar import OccupancyGrid
 from sim_bridge import Episode, RobotProfile, Simulation
+from sim_bridge.config import LATENCY
 from sim_bridge.faults import FaultInjector
 from sim_bridge.sensors.lidar import LaserProfile
 from sim_bridge.world import World
@@ -63,8 +64,8 @@ class HeadlessMission:
         # What localization computes takes effect at the next tick, as it comes last; the client, which comes
         # first, passes on what was sent at the last one.
         hooks = client, navigation, errand, self._observer, boxes, localization
-        timing = control_period(settings), command_latency(settings)
-        self._episode = Episode(simulation, *timing, faults, hooks)
+        latency = min(LATENCY, navigation.period)
+        self._episode = Episode(simulation, navigation.period, latency, faults, hooks)
 
     def run(self, simulated_timeout: float = 600.0) -> EpisodeResult:
         """Run the episode until the mission ends.

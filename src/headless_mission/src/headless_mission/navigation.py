@@ -16,21 +16,10 @@ from move_base_lite.move_base import TickResult
 from planar import OccupancyGrid, Pose2
 from planar.driving import DriveOutcome
 from sim_bridge import Episode, EpisodeHooks, StepResult
-from sim_bridge.config import LATENCY
 from sim_bridge.sensors.odometry import Odometer
 
 # Names in actionlib_msgs/GoalStatus.
 GOAL_STATUS = {Status.SUCCEEDED: "SUCCEEDED", Status.ABORTED: "ABORTED", Status.CANCELLED: "PREEMPTED"}
-
-
-def control_period(settings: NavigatorSettings) -> float:
-    """Return the period of move_base's ticks [s]."""
-    return 1.0 / settings.move_base.controller_frequency
-
-
-def command_latency(settings: NavigatorSettings) -> float:
-    """Return the time until a command takes effect, as in lock-step [s]."""
-    return min(LATENCY, control_period(settings))
 
 
 class NavigationHooks(EpisodeHooks):
@@ -45,6 +34,7 @@ class NavigationHooks(EpisodeHooks):
         move_base: What the node move_base does.
         result: Result of the latest tick.
         diagnosis: First fault of a sensor that was found; empty if there was none.
+        period: Control period [s].
     """
 
     def __init__(self, settings: NavigatorSettings, grid: Optional[OccupancyGrid] = None):
@@ -52,6 +42,7 @@ class NavigationHooks(EpisodeHooks):
         self.move_base = MoveBase(settings, self.poses, grid)
         self.result = TickResult(Decision(Status.IDLE))
         self.diagnosis = ""
+        self.period = 1.0 / settings.move_base.controller_frequency
 
     @property
     def base_in_map(self) -> Optional[Pose2]:

@@ -1,4 +1,4 @@
-"""An episode: a simulation that is stepped by control periods, with hooks (dm_control: composer.Environment)."""
+"""An episode: a simulation stepped by control periods, with hooks (dm_control: composer.Environment)."""
 
 from typing import Callable, Optional, Sequence
 

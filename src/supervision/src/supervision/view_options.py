@@ -24,7 +24,8 @@ class ViewOptions:
 
     speed: Optional[float] = option(
         None,
-        "1 real time, N times that, 0 as fast as the nodes keep up (default: 0, with --rviz or --web 1)",
+        "1 real time, N times that, 0 as fast as the nodes keep up "
+        "(default: 1 if a person watches or Ctrl-C ends it, else 0)",
         type=speed_factor,
     )
     rviz: bool = option(False, "show it in rviz, if there is a display")
@@ -42,9 +43,14 @@ class ViewOptions:
     )
 
     @property
+    def is_interactive(self) -> bool:
+        """Whether Ctrl-C is the intended end of the run."""
+        return False
+
+    @property
     def effective_speed(self) -> float:
         """Simulated seconds per second of wall time; 0: as fast as the nodes keep up."""
-        return float(self.has_view) if self.speed is None else self.speed
+        return float(self.has_view or self.is_interactive) if self.speed is None else self.speed
 
     @property
     def has_view(self) -> bool:

@@ -66,6 +66,10 @@ class SimulatedBoxes:
                 self._has_failed = True
         return self._boxes.placed
 
+    def room_beside(self, robot: Pose2, size: float) -> Pose2:
+        """Return a free pose next to the robot in the map, for an object of that width [m]."""
+        return self._boxes.room_beside(robot, size)
+
     def _on_map(self, message) -> None:
         self._boxes.set_map(grid_from_msg(message))
 

@@ -14,7 +14,8 @@ from viser import _messages as forms
 
 # Returns whether a message is passed on; it may raise ClosingError. One for each connection.
 Accepts = Callable[[Any], bool]
-Handler, ProcessRequest = Callable[..., Any], Callable[..., Any]
+Handler = Callable[..., Any]
+ProcessRequest = Callable[..., Any]
 
 
 class ClosingError(Exception):

@@ -41,7 +41,7 @@ class PickObjectsNode:
         self._map: Optional[OccupancyGrid] = None
         self._zones = load_places(self._settings.zones_file)
         self._mission = self._read_mission()
-        rospy.set_param("~places", sorted(self._places))  # for user interfaces
+        rospy.set_param("~places", list(self._places))  # for user interfaces, in the order of the file
         self._errand: Optional[Errand] = None
         self._checkpoint = ParameterCheckpoint() if self._settings.resume else None
         self._lock = threading.Lock()

@@ -14,7 +14,7 @@ LONGEST = 10_000
 
 
 class ParametersTool:
-    name, title, seconds, width = "parameters", "Parameters", 1.0, 560
+    name, title, seconds = "parameters", "Parameters", 1.0
 
     def __init__(self, context: ToolContext):
         self._context = context
