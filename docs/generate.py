@@ -17,9 +17,8 @@ from pathlib import Path
 from typing import Callable, Dict, Iterator, List, Tuple
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path[:0] = [
-    str(path) for path in (*ROOT.glob("src/*/src"), *ROOT.glob("src/compat/*/src"), ROOT / "tests/fuzz")
-]
+PLACES = ("src/*/src", "src/compat/*/src", "tests/fuzz", "tests/runner")
+sys.path[:0] = [str(path) for place in PLACES for path in ROOT.glob(place)]
 
 from alias_packages import alias_packages  # noqa: E402
 
@@ -88,6 +87,7 @@ def commands() -> Iterator[Tuple[str, type]]:
             yield from ((name, folder.find(name)) for name in folder.names())
     yield "run_project", importlib.import_module("run_project.options").ProjectOptions
     yield "fuzz", importlib.import_module("hunt").Fuzz
+    yield "test", importlib.import_module("run_tests").Test
 
 
 def with_generated(page: str) -> str:

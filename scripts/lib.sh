@@ -67,12 +67,12 @@ end_group() { # PID: asked more than once, since bash loses a signal that comes 
 }
 
 step() { # TITLE LOG COMMAND...: runs the command, shows how long it takes, returns its exit code
-    local title=$1 log=$2 status=0 started=$SECONDS
+    local title=$1 log=$2 status=0 started=$SECONDS here=$BASHPID
     shift 2
     print_line "$title ..."
     # Own process groups, and waiting with `wait`, let a signal sent to this shell alone end the step at once.
     set -m
-    show_time "$started" "$BASHPID" 8<&- 9<&- &
+    show_time "$started" "$here" "$log" 8<&- 9<&- &
     clock_pid=$!
     "$@" >>"$log" 2>&1 </dev/null &
     step_pid=$!
@@ -85,11 +85,21 @@ step() { # TITLE LOG COMMAND...: runs the command, shows how long it takes, retu
     return "$status"
 }
 
-show_time() { # STARTED PARENT: until the parent has ended, be it killed
+show_time() { # STARTED PARENT LOG: until the parent has ended, be it killed
     local seconds=0 parent
     while sleep 1 && read -r _ _ _ parent _ <"/proc/$BASHPID/stat" && ((parent == $2)); do
-        ((++seconds % 15)) || print_line "  ... $((SECONDS - $1)) s"
+        ((++seconds % 15)) || print_line "  ... $((SECONDS - $1)) s$(share_built "$3")"
     done
+}
+
+share_built() { # LOG: of a build by catkin, first of the packages and then, as in "[ 14%] Building", of the targets
+    awk '/^-- ~~ +traversing [0-9]+ packages/ { packages = $4 }
+        /^-- \+\+\+ processing catkin package/ { configured++ }
+        /^\[ *[0-9]+%\]/ { share = substr($0, 2) + 0; is_building = 1 }
+        END {
+            if (is_building) print ", " share " %"
+            else if (packages) print ", " configured + 0 " of " packages " packages configured"
+        }' "$1"
 }
 
 start_aside() { # LOG COMMAND...: goes on beside the next steps, until finish_aside

@@ -171,9 +171,9 @@ class AmclBagsTest(unittest.TestCase):
         room = OccupancyGrid(np.full((20, 20), FREE, dtype=np.int8), 0.05)
         for grid in (blank, self.grid, room):  # rejected, used, ignored
             while publisher.get_num_connections() == 0:
-                rospy.rostime.wallsleep(0.1)
+                time.sleep(0.1)
             publisher.publish(grid_to_msg(grid, rospy.Time(1), "map"))
-            rospy.rostime.wallsleep(2.0)
+            time.sleep(2.0)
         final = self.node.play(self.bag)
         self.assert_near(final.found, final.truth)
         publisher.unregister()

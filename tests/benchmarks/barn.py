@@ -13,16 +13,18 @@ FOLDER holds, at any depth, files world_N.world and path_N.npy of the BARN data 
 import argparse
 import json
 import sys
-import time
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from multiprocessing import Pool
 from pathlib import Path
 from typing import Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
+from helpers.timed_navigation import TimedNavigation
 
+from laboratory.tasks.odom_goal import OdomGoalDrive, OdomGoalTask
+from laboratory.tasks.task import SUCCESS
 from laboratory.worlds.barn import GOAL_IN_ODOM, START, BarnFolder, reference_length, score
-from move_base_lite import Navigator, NavigatorSettings, Status, load_settings
+from move_base_lite import load_settings
 from move_base_lite.warmup import warm_up
 from planar import SettingsError
 from sim_bridge import ROBOTS, Simulation, SimulationSettings, load_world
@@ -78,55 +80,26 @@ def main() -> int:
 def _run(task) -> Run:
     number, world_file, path_file, seed, settings = task
     simulation = Simulation(load_world(world_file), ROBOTS["jackal"], SIMULATION, seed, START)
+    navigation = TimedNavigation(settings)
+    drive = OdomGoalDrive(simulation, navigation, OdomGoalTask(GOAL_IN_ODOM, ARRIVED), START)
     try:
-        run = _drive(simulation, settings)
+        outcome, text = drive.run(TIME_LIMIT)
     finally:
         simulation.close()
-    points = score(run.seconds, reference_length(np.load(path_file))) if run.outcome == "success" else 0.0
-    return replace(run, world=number, seed=seed, score=points)
-
-
-def _drive(simulation: Simulation, settings: NavigatorSettings) -> Run:
-    """One run, not yet scored; the clock starts with the goal."""
-    navigator = Navigator(settings)
-    steps = round(1.0 / settings.move_base.controller_frequency / simulation.step_seconds)
-    goal = START @ GOAL_IN_ODOM
-    scan = None
-    while scan is None:
-        observation = simulation.step()
-        scan = observation.scan
-    began, last, driven, recoveries, text, outcome = observation.stamp, START, 0.0, 0, "", "timeout"
-    tick_ms = []
-    navigator.set_goal(GOAL_IN_ODOM)
-    while observation.stamp - began < TIME_LIMIT:
-        base_in_odom = observation.odometry.base_in_odom
-        cpu = time.process_time()
-        decision = navigator.tick(
-            observation.stamp, base_in_odom, base_in_odom, observation.odometry.twist, scan
-        )
-        tick_ms.append(1e3 * (time.process_time() - cpu))
-        recoveries += decision.recovery is not None
-        if decision.status.is_final and decision.status is not Status.SUCCEEDED:
-            outcome, text = decision.status.value, decision.text
-            break
-        command, scan, touched = decision.command, None, set()
-        for _ in range(steps):
-            observation = simulation.step(command)
-            command, scan = None, observation.scan or scan
-            touched.update(observation.contacts)
-        driven += last.distance_to(observation.base_in_world)
-        last = observation.base_in_world
-        if touched:
-            outcome, text = "collision", f"{', '.join(sorted(touched))} at {last.x:.2f}, {last.y:.2f}"
-            break
-        if last.distance_to(goal) <= ARRIVED:
-            outcome = "success"
-            break
-    seconds = observation.stamp - began
+    track = np.array(drive.observer.trajectory)
+    seconds = float(track[-1, 0])
     return Run(
-        0, 0, outcome, text, seconds, driven, 0.0, recoveries,
-        float(np.mean(tick_ms)), float(np.percentile(tick_ms, 99)),
-    )  # fmt: skip
+        world=number,
+        seed=seed,
+        outcome=outcome,
+        text="" if outcome == SUCCESS else text,
+        seconds=seconds,
+        driven=float(np.hypot(*np.diff(track[:, 1:3], axis=0).T).sum()),
+        score=score(seconds, reference_length(np.load(path_file))) if outcome == SUCCESS else 0.0,
+        recoveries=navigation.recoveries,
+        tick_ms_mean=float(np.mean(navigation.tick_ms)),
+        tick_ms_p99=float(np.percentile(navigation.tick_ms, 99)),
+    )
 
 
 def worlds_in(folder: Path, only: Optional[Sequence[int]]) -> Dict[int, Tuple[Path, Path]]:

@@ -23,7 +23,7 @@ from unittest.mock import patch
 import gymnasium
 
 import home_service_gym
-from sim_bridge import Simulation
+from sim_bridge import Episode, Simulation
 from sim_bridge.driving.drive import BASE_RATE
 from sim_bridge.simulation import ROBOT_NAME
 
@@ -97,7 +97,8 @@ def measure(name: str) -> Measurement:
     for _ in range(RESETS):  # fills the cache of paths
         env.reset(options=world)
     resets = [1e3 * cpu_seconds(lambda: env.reset(options=world)) for _ in range(RESETS)]
-    scan = simulation.step().scan
+    scan = Episode(simulation, simulation.step_seconds).step().scan
+    assert scan is not None
     env.close()
     step, bound = statistics.median(step_seconds[1:]), statistics.median(physics_seconds[1:])
     return Measurement(
@@ -111,26 +112,26 @@ def run_episode(env: gymnasium.Env, actions: List[Any]) -> int:
 
 
 @contextlib.contextmanager
-def recorded_motor_commands(simulation: Simulation) -> Iterator[List[Tuple[float, float]]]:
+def recorded_motor_commands(simulation: Simulation) -> Iterator[List[Tuple[float, float, float]]]:
     """Record the motor commands."""
     vehicle = simulation.scene.robot(ROBOT_NAME).vehicle
-    speeds: List[Tuple[float, float]] = []
+    speeds: List[Tuple[float, float, float]] = []
     drive = vehicle.drive
 
-    def record(left: float, right: float) -> None:
-        speeds.append((left, right))
-        drive(left, right)
+    def record(left: float, right: float, seconds: float) -> None:
+        speeds.append((left, right, seconds))
+        drive(left, right, seconds)
 
     with patch.object(vehicle, "drive", record):
         yield speeds
 
 
-def replay(simulation: Simulation, speeds: List[Tuple[float, float]]) -> None:
+def replay(simulation: Simulation, speeds: List[Tuple[float, float, float]]) -> None:
     """Repeat only the physics steps."""
     engine, vehicle = simulation.scene._engine, simulation.scene.robot(ROBOT_NAME).vehicle
     count = simulation.scene.settings.physics_rate // BASE_RATE
-    for left, right in speeds:
-        vehicle.drive(left, right)
+    for left, right, seconds in speeds:
+        vehicle.drive(left, right, seconds)
         for _ in range(count):
             engine.step()
 

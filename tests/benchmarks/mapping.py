@@ -24,13 +24,22 @@ from evaluation.map_truth import LEAST_PRECISION, LEAST_RECALL, score_against_wo
 from evaluation.verdict import ARRIVAL_TOLERANCE
 from explorer_lite import Explorer, ExplorerSettings, FinishTask, GoalFailed, GoalReached, SendGoal
 from headless_mission import NAVIGATION_CONFIG, HeadlessMission
-from move_base_lite import Decision, Navigator, Status, load_settings
+from headless_mission.navigation import NavigationHooks
+from move_base_lite import Decision, Status, load_settings
 from pick_objects import load_mission
-from planar import OccupancyGrid, PlanarError, Pose2, Twist2, save_map
+from planar import OccupancyGrid, PlanarError, Pose2, Scan, save_map
 from planar.config.parameters import settings_from_yaml
 from planar.maps.map_score import MapScore
 from planar_ros.node.entry import use_one_blas_thread
-from sim_bridge import RobotProfile, Simulation, load_world, robot_named
+from sim_bridge import (
+    Episode,
+    EpisodeHooks,
+    RobotProfile,
+    Simulation,
+    StepResult,
+    load_world,
+    robot_named,
+)
 from sim_bridge.world import World
 from slam_lite.config import NodeSettings
 from slam_lite.mapper import Mapper
@@ -62,23 +71,22 @@ class MappingResult:
     mission: Optional[bool] = None
 
 
-class MappingRun:
+class MappingRun(EpisodeHooks):
     """Explores one world with one seed, with a map every ``map_update_interval`` as in the node."""
 
     def __init__(self, world: World, robot: RobotProfile, seed: int):
-        self._simulation = Simulation(world, robot, seed=seed)
+        simulation = Simulation(world, robot, seed=seed)
         self._settings, _ = settings_from_yaml(NodeSettings, SLAM_CONFIG)
         self.mapper = Mapper(self._settings)
         self._renderer = SessionRenderer(self._settings.resolution, self._settings.occupied_threshold)
         field_of_view = robot.laser.beams * robot.laser.angle_increment
         self._explorer = Explorer(ExplorerSettings(field_of_view=field_of_view))
-        navigation = load_settings(NAVIGATION_CONFIG, *([KINECT_CONFIG] if field_of_view < math.pi else []))
-        self._navigator = Navigator(navigation)
-        self._steps_per_tick = round(
-            1.0 / (navigation.move_base.controller_frequency * self._simulation.step_seconds)
-        )
-        self._odom_in_map = Pose2()
+        settings = load_settings(NAVIGATION_CONFIG, *([KINECT_CONFIG] if field_of_view < math.pi else []))
+        self._navigation = NavigationHooks(settings)
+        self._episode = Episode(simulation, self._navigation.period, hooks=(self, self._navigation))
         self._map_stamp = -np.inf
+        self._new_grid: Optional[OccupancyGrid] = None
+        self._end: Optional[FinishTask] = None
         self.true_keyframes: List[np.ndarray] = []
         self.collisions = 0
         self.base_in_world = Pose2()
@@ -86,51 +94,43 @@ class MappingRun:
 
     def run(self) -> FinishTask:
         """Explore to the end and return the result."""
-        command, event, outcome = Twist2(), None, None
         try:
-            while outcome is None:
-                grid, odometry, scan = self._sense(command)
-                if len(self.true_keyframes) == 0:
-                    continue
-                base_in_map = self._odom_in_map @ odometry.base_in_odom
-                order = self._explorer.advance(self.now, grid, base_in_map, event)
-                if isinstance(order, SendGoal):
-                    self._navigator.set_goal(order.pose)
-                decision = self._navigator.tick(
-                    self.now, base_in_map, odometry.base_in_odom, odometry.twist, scan
-                )
-                command, event = decision.command or Twist2(), _event_of(decision)
-                if isinstance(order, FinishTask):
-                    outcome = order
-                elif self.now > LONGEST_SECONDS:
-                    outcome = FinishTask(False, f"not done within {LONGEST_SECONDS:g} simulated seconds")
+            while self._end is None:
+                self._episode.advance()
+                if self._end is None and self.now > LONGEST_SECONDS:
+                    self._end = FinishTask(False, f"not done within {LONGEST_SECONDS:g} simulated seconds")
         finally:
-            self._simulation.close()
-        return outcome
+            self._episode.simulation.close()
+        return self._end
 
-    def _sense(self, command: Twist2):
-        """Step by one control period; return a new map or None, the odometry and the newest scan."""
-        grid = scan = None
-        for _ in range(self._steps_per_tick):
-            seen = self._simulation.step(command)
-            self.collisions += len(seen.contacts)
-            if seen.scan is not None:
-                scan = seen.scan
-                grid = self._map(seen) or grid
-        self.now, self.base_in_world = seen.stamp, seen.base_in_world
-        return grid, seen.odometry, scan
+    def after_step(self, episode: Episode, step: StepResult) -> None:
+        self.collisions += len(step.contacts)
+        if step.scan is not None:
+            self._new_grid = self._map(step, step.scan) or self._new_grid
 
-    def _map(self, seen) -> Optional[OccupancyGrid]:
-        update = self.mapper.insert(seen.odometry.base_in_odom, seen.scan)
+    def at_tick(self, episode: Episode, step: StepResult) -> None:
+        """Advance the exploration by the outcome of the last tick; its hooks precede those of navigation."""
+        self.now, self.base_in_world = step.stamp, step.base_in_world
+        if not self.true_keyframes or self._navigation.base_in_map is None:
+            return
+        event, grid, self._new_grid = _event_of(self._navigation.result.decision), self._new_grid, None
+        order = self._explorer.advance(self.now, grid, self._navigation.base_in_map, event)
+        if isinstance(order, SendGoal):
+            self._navigation.move_base.set_goal(order.pose)
+        elif isinstance(order, FinishTask):
+            self._end = order
+
+    def _map(self, seen: StepResult, scan: Scan) -> Optional[OccupancyGrid]:
+        update = self.mapper.insert(seen.odometry.base_in_odom, scan)
         if update is not None:
-            self._odom_in_map = update.odom_in_map
+            self._navigation.poses.set_odom_in_map(update.odom_in_map)
             if update.is_keyframe:
                 self.true_keyframes.append(seen.base_in_world.as_array())
-        if seen.scan.stamp - self._map_stamp < self._settings.map_update_interval:
+        if scan.stamp - self._map_stamp < self._settings.map_update_interval:
             return None
-        self._map_stamp = seen.scan.stamp
+        self._map_stamp = scan.stamp
         grid = self.grid(self._settings.extent)
-        self._navigator.set_map(grid)
+        self._navigation.move_base.set_map(grid)
         return grid
 
     def grid(self, extent: Optional[Extent] = None) -> OccupancyGrid:

@@ -9,26 +9,23 @@ It localizes itself from scans and drifting odometry; the truth is for the start
 import argparse
 import json
 import sys
-import time
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import List, Optional, Set
 
 import numpy as np
 from helpers.home_scenes import add_box, random_poses
+from helpers.timed_navigation import TimedNavigation
 from helpers.walkers import MIN_MOVING_SPEED, Walker, add_walkers
 
-from amcl_lite import Localizer, LocalizerSettings
-from amcl_lite.config import InitialPose
-from move_base_lite import Navigator, NavigatorSettings, Status, load_settings
+from headless_mission.localization import LocalizationHooks
+from move_base_lite import NavigatorSettings, Status, load_settings
 from move_base_lite.warmup import warm_up
 from planar import OccupancyGrid, Pose2, load_map, wrap
-from planar.config.parameters import settings_from_yaml
-from sim_bridge import ROBOTS, Simulation, load_world
+from sim_bridge import ROBOTS, Episode, EpisodeHooks, Simulation, StepResult, load_world
 from sim_bridge.world import World
 
 ROOT = Path(__file__).resolve().parents[2]
-LOCALIZATION_CONFIG = ROOT / "src" / "amcl_lite" / "config" / "turtlebot.yaml"
 # Simulation steps between two updates of the pedestrians.
 WALKER_PERIOD_STEPS = 2
 
@@ -78,8 +75,7 @@ def _drive(pair: int, options, settings: NavigatorSettings, grid: OccupancyGrid,
     ends = random_poses(settings, grid, rng, 2 * options.walkers)
     walkers = add_walkers(simulation, options.walkers, settings, grid, ends, start, rng, options.heedless)
     try:
-        localizer = _localizer_at(start, grid, options.seed)
-        run = _drive_to(pair, options, simulation, localizer, Navigator(settings, grid), goal, walkers)
+        run = _drive_to(pair, options, simulation, TimedNavigation(settings, grid), start, goal, walkers)
     finally:
         simulation.close()
     touched = f", touched {', '.join(run.touched)}" if run.touched else ""
@@ -91,79 +87,72 @@ def _drive(pair: int, options, settings: NavigatorSettings, grid: OccupancyGrid,
     return run
 
 
-def _localizer_at(start: Pose2, grid: OccupancyGrid, seed: int) -> Localizer:
-    settings, _ = settings_from_yaml(LocalizerSettings, LOCALIZATION_CONFIG)
-    localizer = Localizer(grid, settings, np.random.default_rng(seed))
-    localizer.set_pose(start, InitialPose().covariance)
-    return localizer
-
-
 def _drive_to(
     pair: int,
     options,
     simulation: Simulation,
-    localizer: Localizer,
-    navigator: Navigator,
+    navigation: TimedNavigation,
+    start: Pose2,
     goal: Pose2,
     walkers: List[Walker],
 ) -> Run:
-    period = round(1.0 / options.rate / simulation.step_seconds)
-    observation = simulation.step()
-    start_stamp, last, driven, planned = observation.stamp, observation.base_in_world, 0.0, 0.0
-    touched: Set[str] = set()
-    bumped_into: Set[str] = set()
-    tick_ms: List[float] = []
-    recoveries = 0
-    people = {f"{walker.name}::link" for walker in walkers}
-    scan, decision = None, None
-    navigator.set_goal(goal)
-    while observation.stamp - start_stamp < options.limit:
-        command = None
-        if localizer.odom_in_map is not None:
-            base_in_odom = observation.odometry.base_in_odom
-            base_in_map = localizer.odom_in_map @ base_in_odom
-            start = time.process_time()
-            decision = navigator.tick(
-                observation.stamp, base_in_map, base_in_odom, observation.odometry.twist, scan
-            )
-            tick_ms.append(1e3 * (time.process_time() - start))
-            command, scan = decision.command, None
-            recoveries += decision.recovery is not None
-            if decision.plan_xy is not None and not planned:
-                planned = _length(decision.plan_xy)
-            if decision.status.is_final:
-                break
-        for step in range(period):
-            for walker in walkers if step % WALKER_PERIOD_STEPS == 0 else ():
-                walker.walk(observation.base_in_world, WALKER_PERIOD_STEPS * simulation.step_seconds)
-            observation = simulation.step(command)
-            command = None
-            if observation.scan is not None:
-                scan = observation.scan
-                localizer.update(observation.odometry.base_in_odom, scan)
-            for name in observation.contacts:
-                stands = name in people and abs(observation.odometry.twist.v) < MIN_MOVING_SPEED
-                (bumped_into if stands else touched).add(name)
-        driven += last.distance_to(observation.base_in_world)
-        last = observation.base_in_world
+    localization = LocalizationHooks(load_map(options.map), options.seed, start, navigation.poses)
+    observer = WalkerHooks(walkers, start)
+    hooks = observer, navigation, localization
+    episode = Episode(simulation, 1.0 / options.rate, hooks=hooks)
+    navigation.move_base.set_goal(goal)
+    start_stamp = episode.step().stamp
+    while not navigation.result.decision.status.is_final:
+        step = episode.advance()
+        if step.stamp - start_stamp >= options.limit:
+            break
+    decision, last = navigation.result.decision, step.base_in_world
     return Run(
         pair=pair,
-        status=decision.status.value if decision else Status.IDLE.value,
-        text=decision.text if decision else "no scan came",
-        seconds=observation.stamp - start_stamp,
-        planned=planned,
-        driven=driven,
+        status=decision.status.value,
+        text=decision.text,
+        seconds=step.stamp - start_stamp,
+        planned=navigation.planned,
+        driven=observer.driven,
         off_by=last.distance_to(goal),
         off_by_angle=abs(wrap(last.yaw - goal.yaw)),
-        recoveries=recoveries,
-        touched=sorted(touched),
-        bumped_into=sorted(bumped_into),
-        tick_ms=tick_ms,
+        recoveries=navigation.recoveries,
+        touched=sorted(observer.touched),
+        bumped_into=sorted(observer.bumped_into),
+        tick_ms=navigation.tick_ms,
     )
 
 
-def _length(path_xy: np.ndarray) -> float:
-    return float(np.linalg.norm(np.diff(path_xy, axis=0), axis=1).sum())
+class WalkerHooks(EpisodeHooks):
+    """Moves pedestrians, and records distance and contacts of the robot.
+
+    Attributes:
+        driven: Distance that the robot has driven [m].
+        touched: What the robot has touched.
+        bumped_into: Pedestrians that touched it while it stood.
+    """
+
+    def __init__(self, walkers: List[Walker], start: Pose2):
+        self._walkers, self._truth, self._last = walkers, start, start
+        self._people = {f"{walker.name}::link" for walker in walkers}
+        self._steps, self.driven = 0, 0.0
+        self.touched: Set[str] = set()
+        self.bumped_into: Set[str] = set()
+
+    def before_step(self, episode: Episode) -> None:
+        for walker in self._walkers if self._steps % WALKER_PERIOD_STEPS == 0 else ():
+            walker.walk(self._truth, WALKER_PERIOD_STEPS * episode.simulation.step_seconds)
+        self._steps += 1
+
+    def after_step(self, episode: Episode, step: StepResult) -> None:
+        self._truth = step.base_in_world
+        for name in step.contacts:
+            stands = name in self._people and abs(step.odometry.twist.v) < MIN_MOVING_SPEED
+            (self.bumped_into if stands else self.touched).add(name)
+
+    def at_tick(self, episode: Episode, step: StepResult) -> None:
+        self.driven += self._last.distance_to(step.base_in_world)
+        self._last = step.base_in_world
 
 
 def _summary(runs: List[Run]) -> dict:

@@ -18,16 +18,17 @@ from unittest.mock import patch
 
 import numpy as np
 
-from amcl_lite import Localizer, LocalizerSettings
-from move_base_lite import Navigator, load_settings
+from headless_mission.localization import LocalizationHooks
+from headless_mission.navigation import NavigationHooks
+from move_base_lite import Navigator, NavigatorSettings, load_settings
 from move_base_lite.warmup import warm_up
 from planar import Pose2, load_map
 from planar.extensions import Guard, load_object
-from sim_bridge import Simulation, load_world
+from sim_bridge import Episode, Simulation, load_world
 
 ROOT = Path(__file__).resolve().parents[2]
 CONFIG = ROOT / "src" / "move_base_lite" / "config" / "turtlebot.yaml"
-GOAL, SEED, STEPS, MAX_TICKS = Pose2(2.0, 3.0, 0.0), 3, 5, 1000
+GOAL, SEED, MAX_TICKS = Pose2(2.0, 3.0, 0.0), 3, 1000
 PLANNERS = ("plugin_examples.pure_pursuit/PurePursuit", "plugin_examples.critics/Critics")
 
 
@@ -73,7 +74,7 @@ def measure(name: str) -> Measurement:
     with patch.object(kind, "follow", call_times.timed("planner", kind.follow)), patch.object(
         Guard, "call", call_times.timed("guarded", Guard.call)
     ), patch.object(Navigator, "tick", call_times.timed("tick", Navigator.tick)):
-        drive(Navigator(settings, load_map(ROOT / "map" / "home.yaml")))
+        drive(settings)
     guarded, planner = (np.array(call_times.ms[what]) for what in ("guarded", "planner"))
     tick_ms, guard_ms = float(np.median(call_times.ms["tick"])), float(np.median(guarded - planner))
     return Measurement(
@@ -106,27 +107,20 @@ class CallTimes:
         return timed_call
 
 
-def drive(navigator: Navigator) -> None:
-    simulation = Simulation(load_world(ROOT / "map" / "home.world"), seed=SEED)
-    localizer = Localizer(
-        load_map(ROOT / "map" / "home.yaml"), LocalizerSettings(), np.random.default_rng(SEED)
+def drive(settings: NavigatorSettings) -> None:
+    """Drive to the goal."""
+    grid, simulation = (
+        load_map(ROOT / "map" / "home.yaml"),
+        Simulation(load_world(ROOT / "map" / "home.world"), seed=SEED),
     )
-    navigator.set_goal(GOAL)
-    command = None
+    navigation = NavigationHooks(settings, grid)
+    localization = LocalizationHooks(grid, SEED, Pose2(), navigation.poses)
+    episode = Episode(simulation, navigation.period, hooks=(navigation, localization))
+    navigation.move_base.set_goal(GOAL)
     for _ in range(MAX_TICKS):
-        scan = None
-        for _ in range(STEPS):
-            observation = simulation.step(command)
-            command, scan = None, observation.scan or scan
-        odometry = observation.odometry
-        if scan is not None:
-            localizer.update(odometry.base_in_odom, scan)
-        assert localizer.odom_in_map is not None
-        base_in_map = localizer.odom_in_map @ odometry.base_in_odom
-        decision = navigator.tick(observation.stamp, base_in_map, odometry.base_in_odom, odometry.twist, scan)
-        if decision.status.is_final:
+        episode.advance()
+        if navigation.result.decision.status.is_final:
             break
-        command = decision.command
     simulation.close()
 
 

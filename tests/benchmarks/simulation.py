@@ -13,7 +13,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from planar import PlanarError, Twist2
-from sim_bridge import ROBOTS, RobotProfile, Simulation, load_world
+from sim_bridge import ROBOTS, Episode, RobotProfile, Simulation, load_world
 from sim_bridge.world import World
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -63,13 +63,13 @@ def measure(path: str, robot: RobotProfile, seconds: float) -> Measurement:
     start = time.perf_counter()
     world = load_world(path)
     loaded = time.perf_counter()
-    simulation = _started(world, robot)
+    episode = _started(world, robot)
     started = time.perf_counter()
     cpu = time.process_time()
-    for _ in range(round(seconds / simulation.step_seconds)):
-        simulation.step(COMMAND)
+    for _ in range(round(seconds / episode.simulation.step_seconds)):
+        episode.step(COMMAND)
     wall, cpu = time.perf_counter() - started, time.process_time() - cpu
-    simulation.close()
+    episode.simulation.close()
     return Measurement(
         world=Path(path).name,
         robot=robot.name,
@@ -82,12 +82,13 @@ def measure(path: str, robot: RobotProfile, seconds: float) -> Measurement:
     )
 
 
-def _started(world: World, robot: RobotProfile) -> Simulation:
-    """Return a simulation that has taken its first scan, so that nothing is compiled while it is measured."""
+def _started(world: World, robot: RobotProfile) -> Episode:
+    """Return an episode with the first scan taken, so that nothing is compiled while it is measured."""
     simulation = Simulation(world, robot)
+    episode = Episode(simulation, simulation.step_seconds)
     for _ in range(10):
-        simulation.step()
-    return simulation
+        episode.step()
+    return episode
 
 
 if __name__ == "__main__":

@@ -181,8 +181,9 @@ def _deliver(ends: Sequence[str]) -> bool:
     from home_service_msgs.msg import DeliverAction, DeliverGoal
 
     from planar_ros.calls.actions import goal_is_over
+    from rospy_transport.node import is_initialized
 
-    if not rospy.core.is_initialized():
+    if not is_initialized():
         rospy.init_node("soak", disable_signals=True)
         _deliver.client = actionlib.SimpleActionClient("deliver", DeliverAction)  # type: ignore[attr-defined]
         _deliver.client.wait_for_server()  # type: ignore[attr-defined]

@@ -2,6 +2,7 @@
 """A small graph to look at: numbers, pictures, transforms, words, a service, parameters that can be tuned."""
 
 import math
+import time
 from dataclasses import dataclass
 
 import rospy
@@ -12,7 +13,7 @@ from std_srvs.srv import SetBool, SetBoolResponse
 from tf2_msgs.msg import TFMessage
 
 from planar.config.parameters import POSITIVE, parameter
-from planar_ros.node.reconfigure import SettingsReconfigureServer
+from planar_ros.node.parameters import SettingsReconfigureServer
 
 
 @dataclass(frozen=True)
@@ -41,7 +42,7 @@ class Stage:
             if turn % 4 == 0:
                 self._image.publish(picture(turn))
                 rospy.logwarn("turn %d <b>of the stage</b>", turn)
-            rospy.rostime.wallsleep(0.05)
+            time.sleep(0.05)
 
     def _switch(self, request):
         return SetBoolResponse(success=request.data, message=f"switched {request.data}")

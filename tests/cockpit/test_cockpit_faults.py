@@ -60,9 +60,9 @@ class CockpitFaultsTest(unittest.TestCase):
         if PICTURES:
             self.page.screenshot(Path(PICTURES) / "faults.png")
         self.page.click("Tools")
-        self.page.click("Faults")
+        self.page.tick("Faults")
         wait_until("the window to close", lambda: "Inject the fault" not in self.page.text())
-        self.page.click("Faults")
+        self.page.tick("Faults")
         self.page.wait_for("Inject the fault", f"{BIAS} m", "forever")
 
     def test_a_rejection_by_the_simulator_is_shown(self):

@@ -13,7 +13,7 @@ import rospy
 import rostest
 from browser import Browser
 from gazebo_msgs.msg import ModelStates
-from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped, Twist
+from geometry_msgs.msg import PointStamped, PoseStamped, PoseWithCovarianceStamped, Twist
 from nav_msgs.msg import Odometry
 from seeing import pixel
 from waiting import wait_until
@@ -26,6 +26,12 @@ TELEOP = "/cmd_vel_mux/input/teleop"
 GOAL = (1.5, 0.3)
 # Keys, and whither they drive: the signs of the velocities along x and to the left.
 DIRECTIONS = (("i", 1, 0), ("u", 1, 1), ("o", 1, -1), ("j", 0, 1), ("l", 0, -1), ("m", -1, 0))
+# How many lines high the label of a checkbox is.
+LINES_OF = """(() => {{
+    const label = [...document.querySelectorAll('label')].find((one) => one.textContent === '{}');
+    const text = label.parentElement;
+    return text.getBoundingClientRect().height / parseFloat(getComputedStyle(text).lineHeight);
+}})()"""
 # A pixel is some centimetres of the floor; the robot stops within 0.25 m of its goal.
 POINTING, ARRIVAL = 0.1, 0.35
 
@@ -38,6 +44,7 @@ class CockpitHomeTest(unittest.TestCase):
             ("/base_pose_ground_truth", Odometry),
             ("/move_base_simple/goal", PoseStamped),
             ("/initialpose", PoseWithCovarianceStamped),
+            ("/clicked_point", PointStamped),
             (TELEOP, Twist),
             ("/gazebo/model_states", ModelStates),
         ):
@@ -72,10 +79,21 @@ class CockpitHomeTest(unittest.TestCase):
         )
         self.assertAlmostEqual(share, 0.5, delta=0.01)
 
+    def test_1_long_names_of_topics_are_on_one_line(self):
+        for name in ("/map", "/move_base/global_costmap/costmap"):
+            self.assertLess(self.page.evaluate(LINES_OF.format(name)), 1.5, name)
+
+    def test_1_one_robot_needs_no_selector(self):
+        self.page.click("Drive")
+        self.page.wait_for("Cancel the goal")
+        self.assertNotIn("Robot\n", self.page.text())
+        self.assertIsNone(self.page.value_of("Robot"))
+        self.page.click("View")
+
     def test_2_a_goal_that_is_clicked_is_reached(self):
         self.page.click("Drive")
         wait_until("a robot that takes goals", lambda: _subscribers("/move_base_simple/goal"), 60.0)
-        self.aim("Goal", "Press on the floor")
+        self.aim("Nav Goal", "Press on the floor")
         self.page.click_at(*pixel(self.page, *GOAL))
         self.page.wait_for("goal sent")
         wait_until("the goal", lambda: "/move_base_simple/goal" in self.newest)
@@ -84,7 +102,7 @@ class CockpitHomeTest(unittest.TestCase):
         wait_until("the robot at the goal", lambda: self.distance_to(*GOAL) < ARRIVAL, 60.0)
 
     def test_3_a_pose_is_pressed_turned_and_released(self):
-        self.aim("Pose", "Press where the robot is")
+        self.aim("Pose Estimate", "Press where the robot is")
         wait_until(
             "standing", lambda: abs(self.newest["/base_pose_ground_truth"].twist.twist.linear.x) < 0.01
         )
@@ -97,16 +115,24 @@ class CockpitHomeTest(unittest.TestCase):
         yaw = 2.0 * math.atan2(pose.orientation.z, pose.orientation.w)
         self.assertAlmostEqual(yaw, math.pi / 2.0, delta=0.2)
 
+    def test_3_a_point_that_is_clicked_is_published(self):
+        self.aim("Publish Point", "it is published")
+        self.page.click_at(*pixel(self.page, *GOAL))
+        self.page.wait_for("point published", "The mouse turns the camera.")
+        wait_until("the point", lambda: "/clicked_point" in self.newest)
+        point = self.newest["/clicked_point"].point
+        self.assertLess(math.hypot(point.x - GOAL[0], point.y - GOAL[1]), POINTING)
+
     def test_4_a_box_is_dropped_where_it_was_clicked(self):
-        self.aim("Box", "a box is dropped there")
+        self.aim("Drop a box", "a box is dropped there")
         self.page.click_at(*pixel(self.page, -0.5, 1.0))
         self.page.wait_for("dropped")
         wait_until("the box", lambda: self.box() is not None)
         self.assertLess(math.hypot(self.box().x + 0.5, self.box().y - 1.0), 0.2)
 
     def test_5_furniture_is_moved_to_where_it_was_pressed(self):
-        self.aim("Move", "Press the new position of the model")
         self.page.choose("Model", "armchair")
+        self.aim("Move the model", "Press the new position of the model")
         self.page.drag(pixel(self.page, -1.0, -3.2), pixel(self.page, -1.0, -2.2))
         self.page.wait_for("armchair moved to")
         wait_until("the armchair", lambda: self.place_of("armchair").y < -2.9)
@@ -137,7 +163,7 @@ class CockpitHomeTest(unittest.TestCase):
 
     def test_7_letters_that_are_written_do_not_drive(self):
         del self.velocities[:]
-        self.page.tick("Object")
+        self.page.focus("Object")
         self.page.hold_key("i", "letters", lambda: "iii" in self.page.value_of("Object"))
         self.page.release_key("i")
         self.page.evaluate("document.activeElement.blur()")
@@ -165,15 +191,15 @@ class CockpitHomeTest(unittest.TestCase):
         page.close()
         wait_until("silence", lambda: not self.topics_of_cockpit(), 10.0)
 
-    def aim(self, mode, hint):
-        self.page.choose("Mouse", mode)
+    def aim(self, tool, hint):
+        self.page.click(tool)
         self.page.wait_for(hint)
 
     def topics_of_cockpit(self):
-        """The topics that it subscribes to, without /clock, to which every node subscribes."""
+        """The topics that it subscribes to, without /clock, as any node, and without the log."""
         _, subscribers, _ = rosgraph.Master("/test").getSystemState()
         found = {topic for topic, nodes in subscribers if any(node.startswith("/cockpit") for node in nodes)}
-        return found - {"/clock"}
+        return found - {"/clock", "/rosout"}
 
     def truth(self):
         position = self.newest["/base_pose_ground_truth"].pose.pose.position

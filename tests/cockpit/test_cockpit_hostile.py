@@ -76,7 +76,7 @@ marker.scale.x = marker.scale.y = marker.scale.z = 0.2
 publisher = rospy.Publisher("/mortal/markers", Marker, queue_size=1)
 while not rospy.is_shutdown():
     publisher.publish(marker)
-    rospy.rostime.wallsleep(0.1)
+    time.sleep(0.1)
 """
 
 
@@ -231,7 +231,7 @@ class CockpitHostileTest(unittest.TestCase):
 
         def knows_the_shelf():
             frames.publish(TFMessage([frame]))
-            rospy.rostime.wallsleep(0.02)
+            time.sleep(0.02)
             return "shelf" in self.good.options("Fixed frame")
 
         wait_until("the valid topic beside it", knows_the_shelf)
@@ -310,7 +310,7 @@ class CockpitHostileTest(unittest.TestCase):
 
         def moves():
             page.press(FORWARD)
-            rospy.rostime.wallsleep(HOLD_SECONDS)
+            time.sleep(HOLD_SECONDS)
             return self.velocities and self.velocities[-1].linear.x > DRIVING
 
         wait_until("the robot to drive", moves)
@@ -349,7 +349,7 @@ def publish_changing_topics():
         scan = LaserScan(angle_increment=2.0 * math.pi / BEAMS, range_max=10.0, ranges=ranges)
         scan.header.frame_id = "base_link"
         publisher.publish(scan)
-        rospy.rostime.wallsleep(0.05)
+        time.sleep(0.05)
 
 
 def grid(width, height, cells, resolution=0.5):

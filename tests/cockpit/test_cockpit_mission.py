@@ -34,10 +34,14 @@ class CockpitMissionTest(unittest.TestCase):
             cockpit = CockpitProcess(FREE_PORT, Path(folder) / "cockpit.log")
             self.addCleanup(cockpit.close)
             self.page = browser.open(cockpit.url, 1400, 1400)
-            self.page.wait_for("/scan", "/map", seconds=90.0)
+            self.page.wait_for("/scan", "/map", "/zones", seconds=90.0)
+            self.assertTrue(self.page.is_ticked("/zones"))
             self.page.click("Drive")
             wait_until("a robot that takes missions", takes_missions, 60.0)
             time.sleep(CATALOGUE_SECONDS + 0.5)
+            self.assertEqual([self.page.value_of(end) for end in ("From", "To")], ["pickup", "dropoff"])
+            self.request("cup", "pickup", "pickup")
+            self.page.wait_for("The mission was refused: delivery 1: cup is at pickup already")
             self.request("cup", "pickup", "dropoff")
             wait_until("the first delivery", lambda: self.states() == [DeliveryState.FETCHING], 60.0)
             self.request("cup", "dropoff", "pickup")
@@ -51,6 +55,8 @@ class CockpitMissionTest(unittest.TestCase):
             if PICTURES:
                 self.page.screenshot(Path(PICTURES) / "mission.png")
             wait_until("the end", lambda: self.states()[1] == DeliveryState.CANCELLED, MISSION_SECONDS)
+            self.page.wait_for("cancelled")
+            self.assertNotIn("refused", self.page.text())
             self.assertEqual(self.page.errors, [])
 
     def request(self, name, source, destination):

@@ -29,6 +29,8 @@ class CockpitToolsTest(unittest.TestCase):
         cls.folder = Path(tempfile.mkdtemp())
         os.chdir(cls.folder)
         cls.cockpit = CockpitProcess(FREE_PORT, cls.folder / "cockpit.log")
+        wait_until("the cockpit to collect the log", collects_log, 60.0)
+        rospy.loginfo("logged before the page was opened")
         cls.browser = Browser()
         cls.page = cls.browser.open(cls.cockpit.url, 1400, 900)
         cls.page.wait_for("Tools", "View")
@@ -47,7 +49,7 @@ class CockpitToolsTest(unittest.TestCase):
         if PICTURES and self.opened:
             self.page.screenshot(Path(PICTURES) / f"{self.opened}.png".replace("/", "_"))
         if self.opened:
-            self.page.click(self.opened)
+            self.page.tick(self.opened)
         self.assertEqual(self.page.errors, [])
 
     def open(self, title):
@@ -77,6 +79,24 @@ class CockpitToolsTest(unittest.TestCase):
     def rates(self):
         words = self.page.evaluate("[...document.querySelectorAll('td')].map((one) => one.innerText)")
         return [float(word) for word in words if word.replace(".", "", 1).isdigit()]
+
+    def test_docked_tools_leave_two_thirds_of_the_width_to_the_view(self):
+        self.open("Console")
+        self.page.wait_for("From level")
+        self.page.tick("Topics")
+        self.page.wait_for("Watch")
+        wait_until("two thirds", lambda: 2.0 / 3.0 <= self.share_of_view() < 1.0)
+        self.page.tick("Topics")
+
+    def share_of_view(self):
+        shown = "document.querySelector('canvas[data-engine]').getBoundingClientRect().width / innerWidth"
+        return self.page.evaluate(shown)
+
+    def test_the_console_shows_what_was_logged_before(self):
+        self.open("Console")
+        self.page.fill_in("Message", "logged before the page")
+        self.page.wait_for("logged before the page was opened")
+        self.page.fill_in("Message", "")
 
     def test_the_console_filters_and_sets_levels(self):
         self.open("Console")
@@ -145,7 +165,8 @@ class CockpitToolsTest(unittest.TestCase):
 
     def test_a_number_is_plotted(self):
         self.open("Plot")
-        self.page.fill_in("or type it", "/sine/data")
+        wait_until("a suggestion", lambda: (self.page.value_of("Number") or "").startswith("/"))
+        self.page.choose("Number", "/sine/data")
         self.page.click("Add")
         self.page.wait_for("/sine/data")
         wait_until("a chart", lambda: self.page.evaluate("document.querySelectorAll('.uplot').length") == 1)
@@ -235,6 +256,11 @@ class CockpitToolsTest(unittest.TestCase):
 def nodes_of(topic):
     publishers, _, _ = rosgraph.Master("/test").getSystemState()
     return dict(publishers).get(topic, [])
+
+
+def collects_log():
+    _, subscribers, _ = rosgraph.Master("/test").getSystemState()
+    return any(node.startswith("/cockpit") for node in dict(subscribers).get("/rosout", []))
 
 
 def services():

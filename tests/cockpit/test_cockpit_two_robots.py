@@ -44,8 +44,8 @@ class CockpitTwoRobotsTest(unittest.TestCase):
         self.assertEqual(page.errors, [])
         page.click("Drive")
         for name, goal in GOALS.items():
-            page.choose("Robot", f"/{name}/")
-            page.choose("Mouse", "Goal")
+            page.choose("Robot", name)
+            page.click("Nav Goal")
             page.wait_for("Press on the floor")
             page.click_at(*pixel(page, goal.x, goal.y))
             wait_until(f"{name} to set off", lambda: self.speed_of(name) > 0.1, 60.0)  # noqa: B023

@@ -9,7 +9,8 @@ import rostest
 from ground_truth import wait_for_ground_truth
 from waiting import wait_until
 
-from evaluation.ros.referee import Referee
+from evaluation.consumers.referee import Referee
+from evaluation.ros.run_topics import observe
 from home_service import Commander, CommanderError, Result
 from planar import Pose2, wrap
 from planar_ros.calls.load_map import LoadMap
@@ -22,7 +23,7 @@ class CommanderTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.referee = Referee({}, print)
-        cls.referee.start()
+        observe(cls.referee)
         cls.robot = Commander()
 
     def setUp(self):

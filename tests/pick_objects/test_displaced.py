@@ -12,7 +12,8 @@ from home_service_msgs.msg import DeliverAction, DeliverGoal
 from std_msgs.msg import String
 from std_srvs.srv import Empty
 
-from evaluation.ros.referee import Referee
+from evaluation.consumers.referee import Referee
+from evaluation.ros.run_topics import observe
 from planar_ros.calls.actions import server_is_ready
 
 WALL_DEADLINE = 80.0
@@ -31,7 +32,7 @@ class DisplacedTest(unittest.TestCase):
         self.remarks = []
         rospy.Subscriber("/simulation/remarks", String, lambda message: self.remarks.append(message.data))
         self.referee = Referee({}, print)
-        self.referee.start()
+        observe(self.referee)
         client = actionlib.SimpleActionClient("deliver", DeliverAction)
         self._wait("the robot", lambda: server_is_ready(client) and self.referee.truth)
         client.send_goal(DeliverGoal(mission=MISSION))

@@ -19,7 +19,8 @@ from nav_msgs.msg import Odometry
 from recording import MessageRecorder
 from visualization_msgs.msg import Marker
 
-from evaluation.ros.referee import Referee
+from evaluation.consumers.referee import Referee
+from evaluation.ros.run_topics import observe
 from evaluation.verdict import ERRAND, OBJECTS, judge
 from pick_objects import parse_mission
 from planar import Pose2
@@ -73,7 +74,7 @@ class MissionsTest(unittest.TestCase):
 
     def setUp(self):
         self.referee = Referee(self.places, print)
-        self.referee.start()
+        observe(self.referee)
         self._wait("the robot", lambda: server_is_ready(self.client) and self.referee.truth)
 
     def test_1_a_mission_with_a_mistake_is_refused_naming_line_and_key(self):

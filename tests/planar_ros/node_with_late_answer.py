@@ -1,25 +1,30 @@
 #!/usr/bin/env python3
 """A node that publishes an answer only after its topics are closed on shutdown."""
 
+import threading
 import time
 
 import rospy
 from std_msgs.msg import Empty
 
 from planar_ros.node.runner import run
+from rospy_transport.node import on_topics_closed
 
 
 def start():
     answers = rospy.Publisher("answers", Empty, queue_size=1)
-    topic = answers.impl
+    are_closed = threading.Event()
 
     def answer(message):
         print("asked", flush=True)
-        while not topic.closed:
-            time.sleep(0.01)
+        are_closed.wait()
         answers.publish(message)
 
-    rospy.core.add_preshutdown_hook(lambda _reason: time.sleep(1.0))
+    def on_closed():
+        are_closed.set()
+        time.sleep(1.0)
+
+    on_topics_closed(on_closed)
     return rospy.Subscriber("questions", Empty, answer)
 
 

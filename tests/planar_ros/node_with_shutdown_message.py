@@ -4,8 +4,8 @@
 import rospy
 from std_msgs.msg import String
 
-from planar_ros.node.flush import publish_on_shutdown
 from planar_ros.node.runner import run
+from planar_ros.node.topics import publish_on_shutdown
 
 
 def start():

@@ -4,8 +4,8 @@
 import rospy
 from std_msgs.msg import String
 
-from planar_ros.node.flush import flush_and_close
 from planar_ros.node.runner import run
+from planar_ros.node.topics import flush_and_close
 
 
 def start():

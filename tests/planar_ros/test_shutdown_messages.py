@@ -15,7 +15,7 @@ from std_msgs.msg import String
 from waiting import wait_until
 
 from planar_ros.calls.actions import KILLED_TEXT, goal_is_over, server_is_ready
-from planar_ros.node.flush import PATIENCE_SECONDS, flush_and_close
+from planar_ros.node.topics import PATIENCE_SECONDS, flush_and_close
 
 TIMES = 10
 

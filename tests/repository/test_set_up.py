@@ -2,6 +2,7 @@
 
 import fcntl
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -342,6 +343,26 @@ def test_a_failure_beside_the_build_is_reported_after_it(tmp_path, step, code, s
     assert result.returncode == code
     assert sentence in result.stdout + result.stderr
     assert (tmp_path / "devel/.set-up").exists()
+
+
+def test_a_long_build_shows_its_time_and_how_much_is_built(tmp_path):
+    result = in_workspace(
+        tmp_path,
+        """
+        sleep() { command sleep 0.01; }  # of the clock
+        build() {
+            printf -- '-- ~~  traversing 85 packages in order:\n-- +++ processing catkin package: amcl\n'
+            command sleep 2; echo "[ 14%] Building"; command sleep 2; echo "[100%] Built"; command sleep 2
+        }
+        step Building logs/setup/build.log build
+        step Waiting logs/setup/waiting.log command sleep 2
+        """,
+    )
+    building, waiting = result.stdout.split("Waiting ...")
+    assert re.match(r"Building \.\.\.\n  \.\.\. \d+ s, 1 of 85 packages configured\n", building)
+    assert re.search(r"  \.\.\. \d+ s, 14 %\n", building)
+    assert re.search(r"  \.\.\. \d+ s, 100 %\n", building)
+    assert re.search(r"  \.\.\. \d+ s\n", waiting)
 
 
 def test_the_build_does_not_see_what_pip_has_installed_by_half(tmp_path):

@@ -1,6 +1,7 @@
 """Imports respect the layers, and folders, classes and functions stay small."""
 
 import ast
+import re
 from pathlib import Path
 from typing import Iterator, Tuple
 
@@ -12,6 +13,7 @@ ROOT = structure.ROOT
 # From the lowest layer up; a package may import packages of lower layers only.
 LAYERS = (
     {"planar"},
+    {"rospy_transport"},
     {"supervision", "run_report"},
     {"planar_ros"},
     {"sim_bridge", "map_lite", "amcl_lite", "slam_lite", "move_base_lite", "explorer_lite"}
@@ -60,6 +62,12 @@ def test_packages_import_lower_layers_only():
         if LAYER_OF[other] >= LAYER_OF[package]
     ]
     assert upward == []
+
+
+def test_yaml_is_parsed_with_bounds():
+    unbounded = re.compile(r"yaml\.(safe_|full_|unsafe_)?load(_all)?\(|yaml\.compose\(")
+    modules = [path for path in structure.modules(ROOT) if unbounded.search(path.read_text(encoding="utf-8"))]
+    assert modules == [], "use planar.config.bounded_yaml.load_yaml"
 
 
 @pytest.mark.parametrize(

@@ -45,7 +45,7 @@ def examples() -> List[Example]:
 @pytest.fixture
 def tree(tmp_path):
     """A copy of the folders that examples change, with the compiled kernels."""
-    for name in ("src", "map", "docs", "scripts", "tests/fuzz"):
+    for name in ("src", "map", "docs", "scripts", "tests/fuzz", "tests/runner"):
         shutil.copytree(ROOT / name, tmp_path / name, symlinks=True)
     return tmp_path
 

@@ -1,17 +1,19 @@
 """Run one .test file in a child process: ``ros_test.py FOLDER FILE`` prints its outcome."""
 
 import json
+import os
 import signal
 import subprocess
 import sys
-import time
 from dataclasses import asdict
 from pathlib import Path
-from typing import Dict, Optional, Tuple
+from typing import Dict, Optional
 from xml.etree import ElementTree
 
 from containment import ROOT, run_contained
 from outcome import Outcome, failure, judge_ros_test
+
+from supervision.processes import ending_with_parent
 
 DEFAULT_SECONDS = 60.0  # of a <test> without time-limit
 START_AND_STOP_SECONDS = 60.0  # of everything around the <test>s of a file
@@ -36,20 +38,25 @@ class RosTest:
 
     def __init__(self, folder: Path, path: Path):
         self.name = name_of(path)
-        self._started = time.monotonic()
         command = [sys.executable, __file__, str(folder), str(path)]
         # A new session, so that it is interrupted only once and only on purpose.
-        self._process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, start_new_session=True)
+        self._process = subprocess.Popen(
+            command,
+            stdout=subprocess.PIPE,
+            text=True,
+            start_new_session=True,
+            preexec_fn=ending_with_parent(signal.SIGTERM),
+        )
 
-    def wait(self) -> Tuple[Outcome, float]:
-        """Return the outcome and the duration [s]."""
-        output, _ = self._process.communicate()
-        outcome = Outcome(**json.loads(output)) if output else failure("was terminated")
-        return outcome, time.monotonic() - self._started
-
-    def end(self) -> None:
-        """Terminate the child process, which ends its own children."""
-        self._process.terminate()
+    def wait(self) -> Outcome:
+        """Return the outcome; if interrupted, end the child process, which ends its own children."""
+        try:
+            output, _ = self._process.communicate()
+        except KeyboardInterrupt:
+            self._process.terminate()
+            self._process.wait()
+            raise
+        return Outcome(**json.loads(output)) if output else failure("was terminated")
 
 
 def run(folder: Path, path: Path) -> Outcome:
@@ -62,6 +69,9 @@ def run(folder: Path, path: Path) -> Outcome:
 
 
 def main(folder: str, path: str) -> Optional[int]:
+    """Run a .test file, whose scripts are in the package tests/, and their helpers in tests/shared."""
+    for variable, place in (("ROS_PACKAGE_PATH", "tests"), ("PYTHONPATH", "tests/shared")):
+        os.environ[variable] = os.pathsep.join([str(ROOT / place), os.environ.get(variable, "")])
     try:
         print(json.dumps(asdict(run(Path(folder), Path(path)))))
     except KeyboardInterrupt:

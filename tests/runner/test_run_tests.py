@@ -1,11 +1,16 @@
+import os
+import shutil
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
+import psutil
 import pytest
-from outcome import Outcome, failure, judge_ros_test, judge_unit_tests, read_report
+from outcome import Outcome, judge_ros_test, judge_unit_tests, read_report
 from ros_test import time_limits
-from run_tests import NEEDS, ROOT, RunSummary, is_installed, missing_requirement
+from rostest_plugin import NEEDS, ROOT, is_installed, missing_requirement
 
 
 def write_report(path, tests, failures=0, errors=0, skipped=0):
@@ -109,16 +114,6 @@ def test_what_needs_something_that_is_not_there_is_left_out():
     assert missing_requirement(mission, lambda name: False) is None
 
 
-@pytest.mark.parametrize("is_quick", [False, True])
-def test_only_a_quick_run_leaves_out_what_needs_something_that_is_not_there(tmp_path, capsys, is_quick):
-    account = RunSummary(tmp_path)
-    account.add("tests/system/mission", Outcome(passed=1), 1.0)
-    account.add_missing("tests/cockpit/course.test", "viser", is_quick)
-    assert account.conclude() == (0 if is_quick else 1)
-    expected = "skipped: " if is_quick else "FAILED "
-    assert f"{expected}tests/cockpit/course.test" in capsys.readouterr().out
-
-
 def test_a_browser_alone_shows_no_page():
     page = ROOT / "tests/cockpit/course.test"
     assert missing_requirement(page, lambda name: name == "google-chrome") == "viser"
@@ -136,11 +131,83 @@ def test_what_needs_something_is_there():
     assert all((ROOT / place).exists() for place in NEEDS)
 
 
-def test_a_test_that_ended_before_it_had_a_log_is_reported(tmp_path, capsys):
-    account = RunSummary(tmp_path)
-    account.add("tests/system/mission", failure("was terminated"), 1.0)
-    assert account.conclude() == 1
-    assert "FAILED tests/system/mission: was terminated" in capsys.readouterr().out
+# Stands in for rostest: writes the report of a test, leaves without one, or runs until it is interrupted.
+ROSTEST = """#!/usr/bin/env python3
+import pathlib, sys, time
+folder, path = pathlib.Path(sys.argv[1].partition("=")[2]), pathlib.Path(sys.argv[2])
+folder.mkdir(exist_ok=True)
+print("the log of", path.stem)
+if path.stem == "endless":
+    folder.joinpath("started").touch()
+    time.sleep(1000)
+failures = int(path.stem == "broken")
+if path.stem != "lost":
+    case = '<testcase name="test_x"><failure message="1 is not 2"/></testcase>' * failures
+    (folder / "rosunit-t.xml").write_text(f'<testsuite tests="3" failures="{failures}">{case}</testsuite>')
+"""
+TEST_FILE = '<launch><test test-name="t" pkg="p" type="t"/></launch>'
+
+
+@pytest.fixture
+def ros_tests(tmp_path, request):
+    """Returns the command to run .test files with a stand-in for rostest, and its environment."""
+    programs = tmp_path / "programs"
+    programs.mkdir()
+    (programs / "rostest").write_text(ROSTEST)
+    (programs / "rostest").chmod(0o755)
+    place = ROOT / "build" / f"test_files_{os.getpid()}_{tmp_path.name}"
+    place.mkdir(parents=True)
+    request.addfinalizer(lambda: shutil.rmtree(place))
+
+    def ros_tests(*names, jobs, needs="", quick=False):
+        for name in names:
+            (place / f"{name}.test").write_text(TEST_FILE)
+        script = (
+            "import sys, rostest_plugin; from pathlib import Path; from run_tests import run_ros_tests;"
+            "logs, jobs, quick, needs, *paths = sys.argv[1:];"
+            "place = str(Path(paths[0]).parent.relative_to(rostest_plugin.ROOT));"
+            "rostest_plugin.NEEDS[place] = ((needs,),) if needs else ();"
+            "print(run_ros_tests(Path(logs), [*map(Path, paths)], int(jobs), bool(quick)))"
+        )
+        paths = [place / f"{name}.test" for name in names]
+        command = [sys.executable, "-c", script, tmp_path, str(jobs), "yes" if quick else "", needs, *paths]
+        environment = {**os.environ, "PATH": f"{programs}:{os.environ['PATH']}"}
+        return {"args": command, "env": environment, "cwd": Path(__file__).parent}
+
+    return ros_tests
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_pytest_runs_test_files_and_counts_their_tests(ros_tests, jobs):
+    command = ros_tests("good", "broken", "lost", jobs=jobs)
+    run = subprocess.run(**command, capture_output=True, text=True, timeout=120.0)
+    lines = run.stdout.splitlines()
+    assert lines[-1] == "5 passed, 2 failed", run.stdout + run.stderr
+    assert any("test_x: 1 is not 2 -- " in line for line in lines)
+    assert any("test 't' left no report -- " in line for line in lines)
+    assert "  | the log of broken" in lines and "  | the log of good" not in lines
+
+
+@pytest.mark.parametrize("quick", [False, True])
+def test_only_a_quick_run_leaves_out_what_needs_something_that_is_not_there(ros_tests, quick):
+    command = ros_tests("good", jobs=1, needs="no_such_command", quick=quick)
+    run = subprocess.run(**command, capture_output=True, text=True, timeout=120.0)
+    assert run.stdout.splitlines()[-1] == ("0 passed, 0 failed" if quick else "0 passed, 1 failed")
+    assert "needs no_such_command; run ./scripts/setup.sh --dev" in run.stdout
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_an_interrupted_run_leaves_no_process(ros_tests, tmp_path, jobs):
+    command = ros_tests("endless", "good", jobs=jobs)
+    process = subprocess.Popen(**command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    deadline = time.monotonic() + 60.0
+    while not [*tmp_path.glob("*/started")] and time.monotonic() < deadline:
+        time.sleep(0.05)
+    left = psutil.Process(process.pid).children(recursive=True)
+    process.send_signal(signal.SIGINT)
+    process.communicate(timeout=60.0)
+    assert process.returncode != 0
+    assert left and not any(child.is_running() for child in left)
 
 
 def chosen(names, missing):

@@ -99,6 +99,11 @@ class Browser:
         shutil.rmtree(self._folder, ignore_errors=True)
 
 
+def _find(label, kind=None):
+    """Return an expression for the field, or the input of another kind, with a label."""
+    return f"({FIND_INPUT})({json.dumps(label)}, {json.dumps(kind or FIELD)})"
+
+
 class PageNavigatedError(AssertionError):
     """The page navigated to another one during a request."""
 
@@ -140,8 +145,9 @@ class Tab:
 
     def click(self, text, seconds=20.0):
         """Click the innermost element with this text or label."""
-        wait_until(f"'{text}' to click", lambda: self._is_stable(text), seconds)
-        self.click_at(*self._place_of(text))
+        element = f"({FIND_TEXT})({json.dumps(text)})"
+        wait_until(f"'{text}' to click", lambda: self._is_stable(element), seconds)
+        self.click_at(*self._place_of(element))
 
     def click_at(self, x, y):
         self.drag((x, y), (x, y))
@@ -158,7 +164,7 @@ class Tab:
 
     def hold(self, text, seconds):
         """Hold the button with this text for some seconds."""
-        place = self._place_of(text)
+        place = self._place_of(f"({FIND_TEXT})({json.dumps(text)})")
         assert place is not None, text
         self._mouse("mouseMoved", *place)
         self._mouse("mousePressed", *place, button="left", clickCount=1, buttons=1)
@@ -167,7 +173,7 @@ class Tab:
 
     def press(self, text):
         """Press the button with this text without releasing it."""
-        place = self._place_of(text)
+        place = self._place_of(f"({FIND_TEXT})({json.dumps(text)})")
         assert place is not None, text
         self._mouse("mouseMoved", *place)
         self._mouse("mousePressed", *place, button="left", clickCount=1, buttons=1)
@@ -208,16 +214,25 @@ class Tab:
 
     def tick(self, label):
         """Toggle the checkbox with this label."""
-        wait_until(f"a box {label}", lambda: self._place_of_input(label) is not None)
-        self.click_at(*self._place_of_input(label))
+        wait_until(f"a box {label}", lambda: self._is_stable(_find(label, BOX)))
+        self.click_at(*self._place_of(_find(label, BOX)))
 
     def value_of(self, label):
         """Return the value of the field with this label."""
-        return self.evaluate(f"(({FIND_INPUT})({json.dumps(label)}) || {{}}).value")
+        return self.evaluate(f"({_find(label)} || {{}}).value")
+
+    def is_ticked(self, label):
+        """Return whether the checkbox with this label is ticked."""
+        return self.evaluate(f"({_find(label, BOX)} || {{}}).checked")
+
+    def focus(self, label):
+        """Let keys be written into the field with this label."""
+        wait_until(f"a field {label}", lambda: self._place_of_input(label) is not None)
+        self.evaluate(f"{_find(label)}.focus()")
 
     def fill_in(self, label, text):
         """Replace the value of the field with this label."""
-        self._focus(label)
+        self.focus(label)
         self.evaluate("document.activeElement.select && document.activeElement.select()")
         self._ask("Input.insertText", text=text)
         self.evaluate("document.activeElement.blur()")
@@ -232,21 +247,17 @@ class Tab:
         with self._socket:
             self._ask("Page.close")
 
-    def _focus(self, label):
-        wait_until(f"a field {label}", lambda: self._place_of_input(label) is not None)
-        self.evaluate(f"({FIND_INPUT})({json.dumps(label)}).focus()")
+    def _place_of(self, element):
+        return self.evaluate(f"({UNCOVERED})({element}, {MIDDLE})")
 
-    def _place_of(self, text):
-        return self.evaluate(f"({UNCOVERED})(({FIND_TEXT})({json.dumps(text)}), {MIDDLE})")
-
-    def _is_stable(self, text):
+    def _is_stable(self, element):
         """Whether the element is visible, not covered, and not moving."""
-        place = self._place_of(text)
+        place = self._place_of(element)
         time.sleep(STILL_SECONDS)
-        return place is not None and place == self._place_of(text)
+        return place is not None and place == self._place_of(element)
 
     def _place_of_input(self, label):
-        return self.evaluate(f"({MIDDLE})(({FIND_INPUT})({json.dumps(label)}))")
+        return self.evaluate(f"({MIDDLE})({_find(label)})")
 
     def _offered(self, label):
         """The options of this list if it is open; a misplaced click may have opened another one."""
@@ -302,19 +313,21 @@ class Tab:
 # The innermost visible element with a text, the last one of several.
 FIND_TEXT = """(text) => [...document.querySelectorAll('button, label, span, p, div, a')].filter(
     (one) => one.innerText && one.innerText.trim() === text && one.getClientRects().length).pop() || null"""
-# The field of the row that begins with a label.
-FIND_INPUT = """(label) => {
+BOX, FIELD = "input[type=checkbox]", "input:not([type=hidden], [type=checkbox]), textarea"
+# The checkbox or field of the row that begins with a label.
+FIND_INPUT = """(label, kind) => {
     for (const one of document.querySelectorAll('label, p, div, span')) {
-        if (one.children.length || one.textContent.trim() !== label || !one.getClientRects().length) continue;
+        const isInner = !one.querySelector(':scope > :not(wbr)');
+        if (!isInner || one.textContent.trim() !== label || !one.getClientRects().length) continue;
         for (let row = one.parentElement, n = 0; row && n < 5; row = row.parentElement, n++) {
-            const found = row.querySelector('input:not([type=hidden]), textarea');
+            const found = row.querySelector(kind);
             if (found) return found;
         }
     }
     return null;
 }"""
 OPTIONS_OF = f"""(label) => {{
-    const input = ({FIND_INPUT})(label);
+    const input = ({FIND_INPUT})(label, {FIELD!r});
     const list = input && document.getElementById(input.getAttribute('aria-controls'));
     const options = list ? [...list.querySelectorAll('[role=option]')] : [];
     return options.filter((one) => one.getClientRects().length);

@@ -7,7 +7,8 @@ import unittest
 import rospy
 import rostest
 
-from evaluation.ros.referee import Referee
+from evaluation.consumers.referee import Referee
+from evaluation.ros.run_topics import observe
 from evaluation.verdict import ERRAND, MARKERS, judge
 from planar.maps.places import load_pickup_and_dropoff
 
@@ -20,7 +21,7 @@ class MissionTest(unittest.TestCase):
     def test_the_object_is_fetched_and_delivered(self):
         places = {place.name: place for place in load_pickup_and_dropoff(rospy.get_param("~zones_file"))}
         referee = Referee(places, print)
-        referee.start()
+        observe(referee)
         wall_deadline = time.monotonic() + WALL_DEADLINE
         while not referee.mission_record.is_complete(EXPECTED):
             self.assertLess(referee.simulated_seconds, SIMULATED_DEADLINE, f"state '{referee.state}'")

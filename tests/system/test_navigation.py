@@ -12,7 +12,8 @@ from ground_truth import wait_for_ground_truth
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from visualization_msgs.msg import Marker
 
-from evaluation.ros.referee import Referee
+from evaluation.consumers.referee import Referee
+from evaluation.ros.run_topics import observe
 from planar import Pose2
 from planar_ros.calls.actions import server_is_ready
 from planar_ros.messages.conversion import pose2_to_msg
@@ -27,7 +28,7 @@ class NavigationTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.referee = Referee({}, print)
-        cls.referee.start()
+        observe(cls.referee)
         cls.client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
         cls.boxes = rospy.Publisher("sim_bridge/add_box", Marker, queue_size=10)
 

@@ -445,3 +445,16 @@ def test_a_robot_that_stands_is_localized_again_if_asked_for_by_rate():
         before = localizer.updates
         tracking_errors(toy, localizer, still)
         assert localizer.updates - before == updates
+
+
+def test_the_estimate_of_a_standing_robot_does_not_follow_the_bias_of_its_odometry():
+    """The motion thresholds alone let the estimate drift by update_min_angle before the next update."""
+    toy, bias = Toy(START), 5e-4  # [rad/s]
+    localizer, errors = started(toy), []
+    for _ in range(300):
+        toy.stamp += 4.7  # and 0.3 of the scan: 25 minutes
+        toy.base_in_odom = toy.base_in_odom @ Pose2(0.0, 0.0, 5.0 * bias)
+        errors.append(tracking_errors(toy, localizer, [Pose2()])[0])
+    distances, angles = np.array(errors).max(axis=0)
+    assert distances < 0.05
+    assert math.degrees(angles) < 1.0

@@ -8,6 +8,10 @@ from std_srvs.srv import SetBoolRequest, TriggerRequest
 from cockpit.errors import CockpitError
 from cockpit.ros.message_yaml import filled, message_class, service_class, template
 
+MERGED_OFTEN = "k0: &k0 {a: 1}\n" + "".join(
+    f"k{i}: &k{i} {{<<: [*k{i - 1}, *k{i - 1}]}}\n" for i in range(1, 40)
+)
+
 
 def test_a_template_has_the_default_values():
     assert filled(PoseStamped, template(PoseStamped)) == PoseStamped()
@@ -33,6 +37,7 @@ def test_fields_that_are_not_named_stay_as_they_are():
         (UInt8, "data: 300"),
         (PoseStamped, "pose: {position: {x: far}}"),
         (String, "data: " + "x" * 30_000),
+        (String, MERGED_OFTEN),
     ],
 )
 def test_text_that_is_no_such_message_is_an_error(kind, text):

@@ -2,11 +2,13 @@
 
 import math
 import os
+import re
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from home_service_msgs.msg import Delivery, DeliveryState, MissionState
+from nav_msgs.msg import Odometry
 
 from cockpit.errors import CockpitError
 from cockpit.frames import Transform
@@ -19,7 +21,7 @@ from cockpit.models.rates import PeriodicTimer
 from cockpit.models.reconfigure import ReconfigurableParameter, parameters_from_description, values_of
 from cockpit.models.tables import table
 from cockpit.models.text import amount, flat
-from cockpit.models.time_series import TimeSeries, expanded, number_at, numbers_in
+from cockpit.models.time_series import TimeSeries, expanded, number_at, numbers_in, suggested
 
 PUBLISHERS = {
     "/scan": ["/sim"],
@@ -167,6 +169,15 @@ def test_the_numbers_of_a_message_are_listed():
     assert "header.frame_id" not in listed
 
 
+def test_numbers_are_suggested_by_topic_without_those_of_headers():
+    numbers = {"/odom": numbers_in(Odometry()), "/go": ["data"]}
+    assert numbers["/odom"][0] == "pose.pose.position.x"
+    assert numbers["/odom"][-1] == "header.stamp"
+    found = suggested(numbers)
+    assert {("/odom", "twist.twist.linear.x"), ("/go", "data")} <= set(found)
+    assert not [path for _, path in found if path.startswith("header")]
+
+
 def test_traces_hold_each_number_until_the_next_and_leave_out_what_is_none():
     traces = TimeSeries(seconds=10.0)
     for at, value in ((0.0, 5.0), (91.0, 1.0), (95.0, 2.0), (96.0, math.nan)):
@@ -293,3 +304,11 @@ def test_the_states_of_deliveries_have_the_names_of_their_message():
 
 def test_nothing_in_a_table_is_html():
     assert "<script>" not in table(("A",), [("<script>",), ("<script>" * 20,)])
+
+
+def test_names_in_a_table_are_never_broken_and_texts_between_words():
+    name = "/move_base/DWAPlannerROS/trajectory_samples/critics/of/one"
+    drawn = table(("Name", "Text"), [(name, "two words " * 6)])
+    of_name, of_text = (style for style in re.findall(r'<td style="([^"]*)"', drawn))
+    assert "white-space:nowrap" in of_name
+    assert "overflow-wrap:break-word" in of_text and "anywhere" not in drawn

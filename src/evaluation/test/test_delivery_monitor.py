@@ -67,3 +67,21 @@ def test_a_delivery_that_is_only_reported_is_judged_by_where_the_robot_is():
     record, _ = monitored((DeliveryStage.WAITING, Pose2()), (DeliveryStage.DELIVERED, Pose2()))
     assert record.pickup_error == 0.0
     assert record.failure == "at desk the robot truly stood 5.00 m off, more than 0.25 m"
+
+
+def test_retries_count_from_the_first_goal_that_had_to_be_sent_again():
+    records = []
+    monitor = DeliveryMonitor({}, records, str)
+    history = [
+        (DeliveryStage.WAITING, 0, 0),
+        (DeliveryStage.FETCHING, 1, 0),
+        (DeliveryStage.FETCHING, 2, 1),
+        (DeliveryStage.PICKING_UP, 2, 1),
+        (DeliveryStage.CARRYING, 3, 1),
+        (DeliveryStage.CARRYING, 5, 3),
+        (DeliveryStage.FAILED, 5, 3),
+    ]
+    for stage, attempts, retries in history:
+        monitor.update(TEA, stage, attempts, "", None)
+        assert records[0].retries == retries
+    assert records[0].result_fields()["retries"] == 3

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from evaluation.samples import Samples
+from evaluation.consumers.samples import Samples
 
 
 def sampled(seconds, most, rate=50.0):

@@ -3,14 +3,19 @@ import os
 import subprocess
 import sys
 from argparse import ArgumentTypeError
+from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
-from evaluation.options import speed_factor
+from evaluation.options import ROOT
+from headless_mission.inputs import read_home
 from home_service import commands
 from home_service.cli import main
 from home_service.commands.test_navigation import goal_list
+from sim_bridge import ROBOTS
 from supervision.cli import parse
+from supervision.view_options import speed_factor
 
 
 def test_goals_are_read_from_a_line():
@@ -52,6 +57,24 @@ def test_every_command_has_a_help_text(command, capsys):
 )
 def test_interactive_commands_have_no_default_time_out(arguments, expected):
     assert parse(arguments, commands.FOLDER).time_limit == expected
+
+
+@pytest.mark.parametrize(
+    "arguments, speed",
+    [
+        (["test_navigation"], 1.0),
+        (["test_navigation", "--speed", "0"], 0.0),
+        (["test_navigation", "--goals", "1 2 3"], 0.0),
+        (["test_navigation", "--goals", "1 2 3", "--web"], 1.0),
+        (["launch"], 1.0),
+        (["home_service"], 0.0),
+        (["home_service", "--serve"], 1.0),
+        (["test_slam"], 1.0),
+        (["test_slam", "--drive", "auto"], 0.0),
+    ],
+)
+def test_a_run_that_waits_for_a_person_is_at_real_time_by_default(arguments, speed):
+    assert parse(arguments, commands.FOLDER).effective_speed == speed
 
 
 def test_a_headless_run_is_limited_by_simulated_time():
@@ -114,6 +137,65 @@ def test_a_zone_in_a_wall_or_outside_the_map_is_refused_before_anything_is_start
     zones.write_text("pickup: {x: 2.0, y: 3.0, yaw: 0.0}\ndropoff: {x: 40.0, y: 3.0, yaw: 0.0}\n")
     assert main(["home_service", "--zones", str(zones)]) == 2
     assert f"error: {zones}: place dropoff (40, 3) lies outside the map" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", ["home_service", "rehearse", "test_navigation", "follow", "add_marker"])
+def test_another_world_needs_its_map(command, tmp_path, capsys):
+    world = tmp_path / "my.world"
+    world.write_bytes((ROOT / "map/home.world").read_bytes())
+    assert main([command, "--world", str(world)]) == 2
+    assert capsys.readouterr().err == (
+        f"error: {world}: no map given, and map/home.yaml is that of map/home.world;\n"
+        f"  ./scripts/map_home.sh --world {world} --save {tmp_path}/my\n"
+        f"makes one for --map {tmp_path}/my.yaml\n"
+    )
+
+
+def test_the_map_of_the_home_may_be_given_for_another_world(tmp_path):
+    world = tmp_path / "my.world"
+    world.write_bytes((ROOT / "map/home.world").read_bytes())
+    for given in (
+        ["--map", str(ROOT / "map/home.yaml"), "--world", str(world)],
+        ["--world", "map/home.world"],
+    ):
+        options = parse(["test_navigation", *given], commands.FOLDER)
+        assert read_home(replace(options, world=Path(ROOT / options.world))).grid is not None
+
+
+def test_a_robot_may_be_given_by_a_relative_path(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "bot.urdf").write_text(ROBOTS["turtlebot_lidar"].description())
+    for command in ("launch", "map_home", "home_service"):
+        options = parse([command, "--robot", "bot.urdf"], commands.FOLDER)
+        assert options.robot == options.launch("any.launch").arguments["robot"] == str(tmp_path / "bot.urdf")
+    assert parse(["launch", "--robot", "jackal"], commands.FOLDER).robot == "jackal"
+
+
+@pytest.mark.parametrize(
+    ("change", "given"),
+    [
+        (("base_footprint</robotBaseFrame>", "base_link</robotBaseFrame>"), "odom -> base_link"),
+        (("odom</odometryFrame>", "world</odometryFrame>"), "world -> base_footprint"),
+        (("<publishTf>1</publishTf>", "<publishTf>0</publishTf>"), "no transform"),
+    ],
+)
+@pytest.mark.parametrize("command", ["home_service", "test_navigation", "map_home", "test_slam"])
+def test_a_robot_with_other_frames_than_navigation_expects_is_refused(
+    command, change, given, tmp_path, capsys
+):
+    robot = tmp_path / "bot.urdf"
+    frames = "<robotBaseFrame>base_footprint</robotBaseFrame><odometryFrame>odom</odometryFrame>"
+    text = ROBOTS["jackal"].description()
+    assert text.count("</plugin>") > 0
+    drive = text.index("</leftJoint>") + len("</leftJoint>")
+    text = text[:drive] + frames + "<publishTf>1</publishTf>" + text[drive:]
+    robot.write_text(text.replace(*change))
+    assert main([command, "--robot", str(robot), "--output", str(tmp_path / "runs")]) == 2
+    assert capsys.readouterr().err == (
+        f"error: {robot}: its odometry publishes {given}, but localization and navigation expect "
+        "odom -> base_footprint; set odometryFrame, robotBaseFrame and publishTf of its drive\n"
+    )
+    assert not (tmp_path / "runs").exists()
 
 
 def test_a_run_for_which_too_few_open_files_are_allowed_is_refused_and_leaves_nothing(tmp_path):

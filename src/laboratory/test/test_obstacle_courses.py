@@ -1,5 +1,7 @@
 """Worlds of static and moving cylinders, generated and from DynaBARN's files."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -8,6 +10,8 @@ from laboratory.generators.fields import CylinderFields
 from laboratory.runner import run_scenario
 from laboratory.suites import load_suites
 from laboratory.worlds.dynabarn import DynabarnFolder
+from planar import Pose2
+from sim_bridge.faults import Fault
 
 WORLD = """\
 start: [11.0, 0.0, 3.14159265]
@@ -78,6 +82,29 @@ def test_a_dynabarn_scenario_runs(folder):
     (scenario,), complaints = load_suites([str(folder / "scenario.yaml")])
     assert complaints == []
     assert run_scenario(scenario, 0).outcome == "success"
+
+
+@pytest.mark.parametrize(
+    ("fault", "complaint"),
+    [
+        ("odometry_stopped", "waiting for a trustworthy sensor (odometry: none for 10."),
+        ("odometry_frozen", "waiting for a trustworthy sensor (odometry: it stands still"),
+        ("scan_nan", "waiting for a trustworthy sensor (scan: nearly all of its beams are NaN"),
+    ],
+)
+def test_a_robot_does_not_drive_on_inputs_that_it_cannot_trust(folder, fault, complaint):
+    (scenario,), _ = load_suites([str(folder / "scenario.yaml")])
+    scenario = replace(
+        scenario,
+        seconds=40.0,
+        task=replace(scenario.task, goal=Pose2(12.0, 0.0)),
+        faults=(Fault(fault, start=1.0),),
+    )
+    trace = scenario.task.run(scenario, scenario.world.arena(0), 0)
+    assert trace.outcome == "failure"
+    assert complaint in trace.reason
+    stands_at, before = trace.trajectory[-1, 1:3], trace.trajectory[-20, 1:3]
+    assert np.allclose(stands_at, before, atol=1e-4)
 
 
 @pytest.mark.parametrize(

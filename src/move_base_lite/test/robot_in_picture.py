@@ -6,7 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from move_base_lite import Status, load_settings
+from move_base_lite import NavigatorInputs, RobotState, Status, load_settings
+from move_base_lite.costmap import observation_from_scan
 from planar import OCCUPIED, OccupancyGrid, Pose2, Scan, Twist2, wrap
 from planar.geometry.ray_casting import cast_rays
 
@@ -58,13 +59,10 @@ class Robot:
         return Scan(self.now, 0.0, 2.0 * math.pi / 180, np.where(ranges >= 8.0, np.inf, ranges), 0.1, 8.0)
 
     def tick(self, navigator):
-        decision = navigator.tick(
-            self.now,
-            self.pose,
-            self.ODOM_IN_MAP.inverse() @ self.pose,
-            self.twist,
-            self.scan() if self.has_laser else None,
-        )
+        state = RobotState(self.now, self.pose, self.ODOM_IN_MAP.inverse() @ self.pose, self.twist)
+        topic = navigator.settings.scan_topic
+        observations = [observation_from_scan(topic, self.scan())] if self.has_laser else []
+        decision = navigator.tick(state, NavigatorInputs(observations))
         self.drive(decision.command or Twist2())
         return decision
 

@@ -19,6 +19,9 @@ from move_base_lite.recovery import MoveSlowSettings, RotateSettings
 from planar import Pose2, SettingsError, grid_from_picture
 
 DWA = {"base_local_planner": "dwa_local_planner/DWAPlannerROS"}
+MERGED_OFTEN = "k0: &k0 {a: 1}\n" + "".join(
+    f"k{i}: &k{i} {{<<: [*k{i - 1}, *k{i - 1}]}}\n" for i in range(1, 40)
+)
 CONFIG = Path(__file__).resolve().parents[1] / "config"
 DOCUMENTED = yaml.safe_load((CONFIG / "move_base_lite.yaml").read_text())
 
@@ -122,6 +125,7 @@ def test_a_footprint_can_be_text_and_is_inherited_by_the_costmaps():
             "recovery_behaviors: jump has an unknown type 'jump/Jump'",
         ),
         ({"footprint": 5000 * "["}, "/move_base/global_costmap/footprint must be a list of points"),
+        ({"footprint": MERGED_OFTEN}, "/move_base/global_costmap/footprint must be a list of points"),
         (
             {"global_costmap": {"obstacle_layer": "many", "scan": {"topic": "scan"}}},
             "/move_base/global_costmap/obstacle_layer must be a table of parameters, got 'many'",

@@ -18,8 +18,8 @@ from robot_in_picture import (
     with_block,
 )
 
-from move_base_lite import Navigator, Status, settings_from_parameters
-from move_base_lite.costmap import INSCRIBED
+from move_base_lite import Navigator, NavigatorInputs, RobotState, Status, settings_from_parameters
+from move_base_lite.costmap import INSCRIBED, observation_from_scan
 from move_base_lite.recovery import MoveSlowSettings, NamedRecovery
 from planar import Pose2, Twist2, wrap
 
@@ -220,14 +220,10 @@ def with_estimate_error(robot, jump):
     true_tick = Navigator.tick
 
     def tick(navigator):
-        decision = true_tick(
-            navigator,
-            robot.now,
-            robot.pose @ Pose2(0.0, jump(robot)),
-            robot.ODOM_IN_MAP.inverse() @ robot.pose,
-            robot.twist,
-            robot.scan(),
-        )
+        base_in_odom = robot.ODOM_IN_MAP.inverse() @ robot.pose
+        state = RobotState(robot.now, robot.pose @ Pose2(0.0, jump(robot)), base_in_odom, robot.twist)
+        observation = observation_from_scan(navigator.settings.scan_topic, robot.scan())
+        decision = true_tick(navigator, state, NavigatorInputs([observation]))
         robot.drive(decision.command or Twist2())
         return decision
 
@@ -335,3 +331,22 @@ def test_the_same_run_gives_the_same_poses(settings):
         return robot.now, robot.pose
 
     assert poses() == poses()
+
+
+def test_the_separate_arguments_of_earlier_versions_give_the_same_decision(settings):
+    decisions = []
+    for is_old in (False, True):
+        robot, navigator = Robot(room(4.0, 4.0), Pose2(1.0, 2.0)), Navigator(settings, room(4.0, 4.0))
+        navigator.set_goal(Pose2(3.0, 2.0))
+        base_in_odom, topic = robot.ODOM_IN_MAP.inverse() @ robot.pose, settings.scan_topic
+        if is_old:
+            with pytest.warns(DeprecationWarning, match="use tick"):
+                decisions.append(
+                    navigator.tick(0.0, robot.pose, base_in_odom, robot.twist, robot.scan(), latency=0.1)
+                )
+        else:
+            state = RobotState(0.0, robot.pose, base_in_odom, robot.twist)
+            inputs = NavigatorInputs([observation_from_scan(topic, robot.scan())], latency=0.1)
+            decisions.append(navigator.tick(state, inputs))
+    assert decisions[0].command == decisions[1].command
+    assert decisions[0].command.v > 0.0

@@ -1,3 +1,4 @@
+import time
 from pathlib import Path
 
 import pytest
@@ -110,6 +111,50 @@ def test_an_invalid_value_is_reported_with_file_line_and_key(table, read, compla
 def test_invalid_yaml_is_refused(text, complaint):
     with pytest.raises(SettingsError, match=complaint):
         parse_table(text, "x").table("a")
+
+
+def doubling(first, following, levels=40):
+    """A text of a few hundred bytes whose value ``k`` is 2 ** levels times as large as its first one."""
+    lines = [f"k0: &k0 {first}"]
+    lines += [f"k{i}: &k{i} {following.format(f'*k{i - 1}')}" for i in range(1, levels)]
+    return "\n".join([*lines, f"k: {following.format(f'*k{levels - 1}')}"])
+
+
+@pytest.mark.parametrize(
+    "text, complaint",
+    [
+        (doubling("{a: 1}", "{{<<: [{0}, {0}]}}"), "larger than 2 MB with all aliases"),
+        (doubling("[a]", "[{0}, {0}]"), "larger than 2 MB with all aliases"),
+        (doubling("{a: 1}", "{{a: {0}, b: {0}}}"), "larger than 2 MB with all aliases"),
+        ("k0: &k0 " + "x" * 100_000 + "\nk: [" + ", ".join(["*k0"] * 100) + "]", "larger than 2 MB"),
+        ("k: [" + "1," * 500_000 + "]", "x:1: not valid YAML .larger than 2 MB"),
+        ("k: &k [*k]", "x:1: not valid YAML .found an alias of what contains it"),
+        ("k: &k {<<: *k}", "x:1: not valid YAML .found an alias of what contains it"),
+        ("k: " + "[" * 200 + "]" * 200, "x:1: not valid YAML .nested too deeply"),
+        ("k: 1" + ":1" * 100_000, "x:1: k cannot be parsed .number of more than 400 characters"),
+        ("k: 0x" + "f" * 100_000, "x:1: k cannot be parsed .number of more than 400 characters"),
+        ("k: 1" + ":1" * 100_000 + ".0", "x:1: k cannot be parsed .number of more than 400 characters"),
+        ("k: " + "x" * (2 << 20), "x: larger than 1 MB"),
+    ],
+    ids=range(12),
+)
+def test_a_text_that_would_take_long_is_refused_at_once(text, complaint):
+    start = time.process_time()
+    with pytest.raises(SettingsError, match=complaint) as caught:
+        parse_table(text, "x").number("k")
+    assert len(str(caught.value)) < 1000
+    assert time.process_time() - start < 10.0
+
+
+def test_a_long_value_is_shortened_in_a_message():
+    with pytest.raises(SettingsError) as caught:
+        parse_table("k: " + "x" * 100_000, "x").number("k")
+    assert str(caught.value) == f"x:1: k must be a number, got '{'x' * 199}..."
+
+
+def test_aliases_of_small_values_may_be_many():
+    table = parse_table("a: &a {x: 1}\nb: [" + ", ".join(["*a"] * 10_000) + "]", "x")
+    assert table.value("b") == [{"x": 1}] * 10_000
 
 
 def test_every_unknown_key_of_a_table_is_reported():

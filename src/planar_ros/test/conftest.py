@@ -1,37 +1,43 @@
-"""rospy connections whose remote socket belongs to the test."""
+"""Connections of rospy's publishers whose remote socket belongs to the test, without a master."""
 
 import socket
-from types import SimpleNamespace
 
 import pytest
+import rospy
+from std_msgs.msg import String
 
 from planar_ros.lockstep.transport import LockstepConnection
+from rospy_transport.connections import connect
+from rospy_transport.replacements import install, uninstall
 
 
 @pytest.fixture
-def connected():
+def publisher():
+    """Makes publishers whose connections are those of synchronized nodes."""
+    install(LockstepConnection)
+    publishers = {}
+
+    def made(topic):
+        if topic not in publishers:
+            publishers[topic] = rospy.Publisher(topic, String, queue_size=50)
+        return publishers[topic]
+
+    yield made
+    for each in publishers.values():
+        each.unregister()  # ends the threads of its connections, for which Python would wait at exit
+    uninstall()
+
+
+@pytest.fixture
+def connected(publisher):
     """Connects a node to a topic; returns the remote socket and the connection."""
-    ends, transports = [], []
+    ends = []
 
     def connected(node, topic):
         near, far = socket.socketpair()
-        ends.extend((near, far))
-        plain = SimpleNamespace(
-            endpoint_id=node,
-            protocol=SimpleNamespace(resolved_name=topic),
-            socket=near,
-            done=False,
-            stat_bytes=0,
-            stat_num_msg=0,
-            write_data=near.sendall,
-        )
-        plain.set_cleanup_callback = lambda callback: setattr(plain, "closed", callback)
-        transports.append(plain)
-        return far, LockstepConnection(plain, 50)
+        ends.append(far)
+        return far, connect(publisher(topic), node, near)
 
     yield connected
-    for transport in transports:  # ends the thread of its connection, for which Python would wait at exit
-        transport.done = True
-        transport.closed(transport)
     for end in ends:
         end.close()

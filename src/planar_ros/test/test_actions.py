@@ -7,6 +7,7 @@ from actionlib.action_client import GoalManager
 from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
 from move_base_msgs.msg import MoveBaseAction, MoveBaseActionGoal, MoveBaseActionResult, MoveBaseGoal
 
+from planar_ros.calls import actions
 from planar_ros.calls.actions import (
     MAX_ENDED_GOALS,
     ActionServer,
@@ -17,6 +18,7 @@ from planar_ros.calls.actions import (
     server_is_ready,
 )
 from planar_ros.lockstep import LockstepClient
+from rospy_transport.node import set_time, unregistered_node
 
 
 def test_ended_goals_are_pruned_except_the_last_ones():
@@ -28,34 +30,37 @@ def test_ended_goals_are_pruned_except_the_last_ones():
     assert prune_ended([]) == []
 
 
-def client(goal_subscribers, result_publisher="/server"):
-    def publisher(*subscribers):
-        return SimpleNamespace(impl=SimpleNamespace(has_connection=lambda name: name in subscribers))
+@pytest.fixture
+def client(monkeypatch):
+    """Factory of an action client whose topics are the lists of the nodes connected to them."""
+    monkeypatch.setattr(actions, "is_connected", lambda topic, node: node in topic)
+    monkeypatch.setattr(actions, "connected_publishers", set)
 
-    status = SimpleNamespace(_connection_header={"callerid": "/server"})
-    connection = SimpleNamespace(callerid_pub=result_publisher)
-    inner = SimpleNamespace(
-        last_status_msg=status,
-        pub_goal=publisher(*goal_subscribers),
-        pub_cancel=publisher("/server"),
-        result_sub=SimpleNamespace(impl=SimpleNamespace(connections=[connection])),
-    )
-    return SimpleNamespace(action_client=inner)
+    def made(goal_subscribers, result_publisher="/server"):
+        status = SimpleNamespace(_connection_header={"callerid": "/server"})
+        inner = SimpleNamespace(
+            last_status_msg=status,
+            pub_goal=goal_subscribers,
+            pub_cancel=["/server"],
+            result_sub=[result_publisher],
+        )
+        return SimpleNamespace(action_client=inner)
+
+    return made
 
 
-def test_a_server_is_ready_only_when_it_has_subscribed_to_goals_itself():
+def test_a_server_is_ready_only_when_it_has_subscribed_to_goals_itself(client):
     assert not server_is_ready(client(goal_subscribers=["/recorder"]))
     assert server_is_ready(client(goal_subscribers=["/recorder", "/server"]))
 
 
-def test_a_server_is_not_ready_before_its_results_can_be_received():
+def test_a_server_is_not_ready_before_its_results_can_be_received(client):
     assert not server_is_ready(client(goal_subscribers=["/server"], result_publisher="unknown"))
 
 
 @pytest.fixture
-def sending(monkeypatch):
+def sending():
     """Factory of a client whose goals go to a function; returns the client and its goal manager."""
-    monkeypatch.setattr(rospy.rostime, "_rostime_initialized", True)
 
     def made(send):
         manager = GoalManager(MoveBaseAction)
@@ -66,7 +71,8 @@ def sending(monkeypatch):
         client.simple_state, client.gh = actionlib.SimpleGoalState.DONE, None
         return client, manager
 
-    return made
+    with unregistered_node():
+        yield made
 
 
 def test_a_goal_is_over_even_if_its_result_arrives_before_send_goal_returns(sending):
@@ -113,21 +119,20 @@ def server(monkeypatch):
     monkeypatch.setattr(rospy, "search_param", lambda _: None)
     monkeypatch.setattr(rospy, "get_name", lambda: "/server")
     monkeypatch.setattr(rospy, "on_shutdown", lambda hook: None)
-    monkeypatch.setattr(rospy.rostime, "_rostime_initialized", True)
     hooks = []
     step = SimpleNamespace(
         is_synchronized=False, every=lambda *given: hooks.append(given), defer=lambda do: do()
     )
     monkeypatch.setattr(LockstepClient, "of_node", lambda: step)
-    server = ActionServer("action", MoveBaseAction, auto_start=False)
-    server.start()
-    server.on_time_jump = hooks[0][2]
-    yield server
-    rospy.rostime.switch_to_wallclock()
+    with unregistered_node():
+        server = ActionServer("action", MoveBaseAction, auto_start=False)
+        server.start()
+        server.on_time_jump = hooks[0][2]
+        yield server
 
 
 def goal_at(seconds):
-    rospy.rostime._set_rostime(rospy.Time(seconds))
+    set_time(rospy.Time(seconds))
     return MoveBaseActionGoal(goal_id=GoalID(rospy.Time(seconds), f"at {seconds}"))
 
 
@@ -145,7 +150,7 @@ def test_after_time_has_jumped_back_goals_are_accepted_whatever_the_last_stamp(s
 
 
 def test_a_cancel_stamped_far_ahead_does_not_cancel_later_goals(server):
-    rospy.rostime._set_rostime(rospy.Time(10))
+    set_time(rospy.Time(10))
     server.action_server.internal_cancel_callback(GoalID(stamp=rospy.Time(2_000_000_000)))
     server.action_server.internal_goal_callback(goal_at(12))
     assert server.is_new_goal_available()

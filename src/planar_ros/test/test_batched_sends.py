@@ -5,6 +5,7 @@ import threading
 import time
 
 import pytest
+import rospy
 
 from planar_ros.lockstep import transport
 from planar_ros.lockstep.transport import CLOCK_TOPIC, MAX_BATCH, LockstepConnection
@@ -77,7 +78,7 @@ def test_a_closed_connection_raises_at_the_next_message_and_not_at_the_flush(con
     while not errors and time.monotonic() < end:
         try:
             connection.write_data(b"lost")
-        except OSError as error:
+        except rospy.TransportTerminated as error:
             errors.append(error)
         transport.flush()
         time.sleep(0.01)

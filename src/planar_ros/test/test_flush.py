@@ -1,55 +1,38 @@
 """Messages that a synchronized node sends before shutdown are counted and delivered."""
 
+import socket
 import threading
 import time
-from types import SimpleNamespace
 
 import pytest
+import rospy
+from std_msgs.msg import String
 
 from planar_ros.lockstep import transport
 from planar_ros.lockstep.transport import LockstepConnection
-from planar_ros.node import flush, topics
+from planar_ros.node import topics
+from rospy_transport.connections import connect as connect_to
+from rospy_transport.node import unregistered_node
 
 SENDER, RECEIVER, TOPIC = "/pick_objects", "/add_markers", "/pick_objects/mission_state"
 CHANNEL = f"{SENDER} {RECEIVER} {TOPIC}"
 
 
-@pytest.fixture
-def publisher(monkeypatch):
-    """A publisher without connections yet, whose node is synchronized with the receiver."""
-    found = SimpleNamespace(
-        resolved_name=TOPIC,
-        impl=SimpleNamespace(connections=[], latch=None),
-        get_num_connections=lambda: len(found.impl.connections),
-    )
-    monkeypatch.setattr(
-        transport, "connections", lambda: ((RECEIVER, TOPIC, each) for each in found.impl.connections)
-    )
+@pytest.fixture(autouse=True)
+def synchronized(monkeypatch):
+    """The node is synchronized with the receiver."""
     monkeypatch.setattr(transport, "_last_counts", {})
     monkeypatch.setattr(topics, "count_subscribers", lambda topic: 1)
     monkeypatch.setattr(LockstepConnection, "members", frozenset((SENDER, RECEIVER)))
-    return found
 
 
-@pytest.fixture
-def connect(publisher, connected):
-    """Connects the receiver; returns its socket and the connection to write to."""
-
-    def connect():
-        far, connection = connected(RECEIVER, TOPIC)
-        publisher.impl.connections.append(connection)
-        return far, connection
-
-    return connect
-
-
-def close_after_reading(far, publisher):
+def close_after_reading(far, connection):
     """Do as rospy: a subscriber closes after its publisher, and the connection is removed."""
 
     def read():
         while far.recv(1024):
             pass
-        publisher.impl.connections.clear()
+        connection.close()
         far.close()
 
     reading = threading.Thread(target=read)
@@ -57,27 +40,27 @@ def close_after_reading(far, publisher):
     return reading
 
 
-def test_messages_sent_on_shutdown_are_counted_after_their_connection_is_removed(publisher, connect):
-    far, connection = connect()
+def test_messages_sent_on_shutdown_are_counted_after_their_connection_is_removed(publisher, connected):
+    far, connection = connected(RECEIVER, TOPIC)
     connection.write_data(b"setting down")
     assert transport.sent(SENDER) == {CHANNEL: 1}
     connection.write_data(b"delivered")
-    reading = close_after_reading(far, publisher)
-    flush.flush_and_close(publisher)
+    reading = close_after_reading(far, connection)
+    topics.flush_and_close(publisher(TOPIC))
     reading.join(5.0)
-    assert publisher.impl.connections == []
+    assert publisher(TOPIC).get_num_connections() == 0
     assert transport.sent(SENDER) == {CHANNEL: 2}
 
 
-def test_a_new_connection_starts_at_zero_messages(publisher, connect):
-    far, connection = connect()
+def test_a_new_connection_starts_at_zero_messages(publisher, connected):
+    far, connection = connected(RECEIVER, TOPIC)
     connection.write_data(b"delivered")
-    reading = close_after_reading(far, publisher)
-    flush.flush_and_close(publisher)
+    reading = close_after_reading(far, connection)
+    topics.flush_and_close(publisher(TOPIC))
     reading.join(5.0)
-    connect()
+    _, connection = connected(RECEIVER, TOPIC)
     assert transport.sent(SENDER) == {CHANNEL: 0}
-    publisher.impl.connections.clear()
+    connection.close()
     assert transport.sent(SENDER) == {}
 
 
@@ -85,21 +68,35 @@ def test_a_subscriber_that_disconnects_is_not_waited_for(publisher, monkeypatch)
     counts = iter((1, 1))
     monkeypatch.setattr(topics, "count_subscribers", lambda topic: next(counts, 0))
     started = time.monotonic()
-    flush.flush_and_close(publisher)
-    assert time.monotonic() - started < flush.PATIENCE_SECONDS / 2
+    topics.flush_and_close(publisher(TOPIC))
+    assert time.monotonic() - started < topics.PATIENCE_SECONDS / 2
 
 
 @pytest.mark.parametrize("is_synchronized", (True, False))
-def test_a_latched_message_reaches_a_new_subscriber(publisher, connect, monkeypatch, is_synchronized):
+def test_a_latched_message_reaches_a_new_subscriber(publisher, monkeypatch, is_synchronized):
+    """rospy adds a connection, then sends the latched message; here a listener of the topic delays it."""
     if not is_synchronized:
         monkeypatch.setattr(LockstepConnection, "members", frozenset())
-    far, connection = connect()
-    publisher.impl.latch = b"latched"
-    sending = threading.Timer(0.1, lambda: connection.write_data(publisher.impl.latch))
-    sending.start()
+    has_connected = threading.Event()
+
+    class Delay(rospy.SubscribeListener):
+        def peer_subscribe(self, *_):
+            has_connected.set()
+            time.sleep(0.1)
+
+    latching = rospy.Publisher(TOPIC, String, Delay(), latch=True, queue_size=50)
+    with unregistered_node():
+        latching.publish("latched")
+    near, far = socket.socketpair()
+    connecting = threading.Thread(target=connect_to, args=(publisher(TOPIC), RECEIVER, near))
+    connecting.start()
+    assert has_connected.wait(5.0)
     received = []
     reading = threading.Thread(target=lambda: received.extend(iter(lambda: far.recv(1024), b"")))
     reading.start()
-    flush.flush_and_close(publisher, patience=1.0)
+    topics.flush_and_close(latching, patience=1.0)
+    connecting.join(10.0)
     reading.join(10.0)
-    assert b"".join(received) == b"latched"
+    latching.unregister()
+    far.close()
+    assert b"".join(received).endswith(b"latched")

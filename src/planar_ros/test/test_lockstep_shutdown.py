@@ -6,7 +6,7 @@ import time
 import pytest
 import rospy
 
-from planar_ros.lockstep import LockstepClient
+from planar_ros.lockstep import LockstepClient, client
 
 
 @pytest.fixture
@@ -27,7 +27,7 @@ def ask_for_a_while(step, monkeypatch):
     asking.start()
     time.sleep(0.1)
     has_ended.set()
-    monkeypatch.setattr(rospy.core, "_in_shutdown", True)
+    monkeypatch.setattr(client, "is_shutting_down", lambda: True)
     asking.join(10.0)
 
 
@@ -37,6 +37,6 @@ def test_a_ready_node_asks_to_be_synchronized(step, monkeypatch):
 
 
 def test_a_node_that_is_shutting_down_does_not_ask(step, monkeypatch):
-    monkeypatch.setattr(rospy.core, "_in_shutdown", True)
+    monkeypatch.setattr(client, "is_shutting_down", lambda: True)
     ask_for_a_while(step, monkeypatch)
     assert not step.answers

@@ -1,28 +1,33 @@
 """Messages are delivered at the logical instant for which they were counted."""
 
 import threading
-from io import BytesIO
-from types import SimpleNamespace
 
 import pytest
-import rospy
-from std_msgs.msg import String
 
 from planar_ros.lockstep import message_buffer as module
 from planar_ros.lockstep.message_buffer import MessageBuffer
-from planar_ros.lockstep.transport import SerializedMessage
+from rospy_transport.replacements import SerializedMessage
 
 CHANNEL = ("/state", "/pick_objects")
 
 
+class Connection:
+    """A connection of this node's subscriber, whose messages are appended to a list."""
+
+    topic, sender = CHANNEL
+    is_latched = True
+
+    def __init__(self, received):
+        self._received = received
+
+    def deliver(self, frames):
+        self._received.extend(frame.data for frame in frames)
+
+
 @pytest.fixture
-def received(monkeypatch):
+def received():
     """The messages that subscribers' callbacks have received."""
-    received = []
-    monkeypatch.setattr(
-        module, "_receive", lambda _to, messages, _by: received.extend(each.data for each in messages)
-    )
-    return received
+    return []
 
 
 @pytest.fixture
@@ -32,29 +37,13 @@ def buffer():
     return buffer
 
 
-def connection():
-    return SimpleNamespace(
-        callerid_pub="/pick_objects",
-        is_latched=True,
-        header={},
-        latch=None,
-        socket=object(),
-        protocol=SimpleNamespace(recv_data_class=String),
-    )
-
-
-SUBSCRIBER = SimpleNamespace(resolved_name="/state", queue_size=None, callbacks=[(None, None)])
-
-
 def receive(buffer, by, *words):
     for word in words:
-        content = BytesIO()
-        String(word).serialize(content)
-        buffer._on_receive(SUBSCRIBER, [SerializedMessage(content.getvalue())], by)
+        buffer.receive(by, [SerializedMessage(word)])
 
 
 def test_buffered_messages_are_delivered_when_released(buffer, received):
-    receive(buffer, connection(), "going", "picking up")
+    receive(buffer, Connection(received), "going", "picking up")
     assert received == []
     assert buffer.release({CHANNEL: 1}) == []
     assert received == ["going"]
@@ -63,20 +52,18 @@ def test_buffered_messages_are_delivered_when_released(buffer, received):
 
 
 def test_the_last_message_is_delivered_after_its_connection_was_reopened(buffer, received):
-    """rospy of Debian 11 reopens a closed connection with the same object."""
-    by = connection()
+    by = Connection(received)
     receive(buffer, by, "going", "picking up")
     buffer.release({CHANNEL: 2})
     receive(buffer, by, "delivered")
-    by.socket = object()
-    receive(buffer, by, "delivered")  # which is latched
+    receive(buffer, Connection(received), "delivered")  # which is latched
     buffer.release({CHANNEL: 1})  # counted from zero
     assert received == ["going", "picking up", "delivered", "delivered"]
 
 
 def test_the_last_message_of_a_node_that_has_died_is_delivered(buffer, received):
-    receive(buffer, connection(), "going")
-    receive(buffer, connection(), "going again")
+    receive(buffer, Connection(received), "going")
+    receive(buffer, Connection(received), "going again")
     buffer.release({CHANNEL: 1})
     assert received == ["going", "going again"]
 
@@ -90,9 +77,10 @@ def test_a_message_counts_as_received_only_after_its_callback_has_returned(buffe
         may_end.wait(10.0)
         is_over.set()
 
-    monkeypatch.setattr(module, "_receive", call_back)
-    monkeypatch.setitem(rospy.topics.get_topic_manager().subs, "/state", SUBSCRIBER)
-    receiving = threading.Thread(target=receive, args=(buffer, connection(), "going"))
+    connection = Connection([])
+    connection.deliver = call_back
+    monkeypatch.setattr(module, "is_subscribed", lambda topic: True)
+    receiving = threading.Thread(target=receive, args=(buffer, connection, "going"))
     receiving.start()
     assert has_begun.wait(10.0)
     buffer.members = frozenset(("/pick_objects",))

@@ -4,38 +4,23 @@ from types import SimpleNamespace
 
 import pytest
 
-from planar_ros.lockstep import service_calls
-from planar_ros.lockstep.service_calls import CallMonitor, delay_service_replies
+from planar_ros.lockstep.transport import CallMonitor, call_headers, caller, delaying_calls
 
 MEMBERS = frozenset(("/sim_bridge", "/pick_objects"))
 
 
 @pytest.fixture
-def server(monkeypatch):
-    """rospy's server of services: a call is handled, its number waited for, and noted if it must be."""
-    seen = SimpleNamespace(handled=[], waited=[], noted=[], members=MEMBERS)
-
-    class Server:
-        def __init__(self, name):
-            self.resolved_name = name
-
-        def _handle_request(self, transport, request):
-            seen.handled.append(self.resolved_name)
-
-    def call(service, caller, **header):
-        request = SimpleNamespace(_connection_header={"callerid": caller, **header})
-        Server(service)._handle_request(None, request)
-
-    monkeypatch.setattr(service_calls, "ServiceImpl", Server)
+def server():
+    """What a server does before a call: it waits for the number of its instant, and notes it if it must."""
+    seen = SimpleNamespace(waited=[], noted=[], members=MEMBERS)
     monitor = CallMonitor(lambda: seen.members, seen.noted.append, harmless=("/sim_bridge/set_parameters",))
-    delay_service_replies(seen.waited.append, monitor)
-    seen.call = call
+    before_call = delaying_calls(seen.waited.append, monitor)
+    seen.call = lambda service, node, **header: before_call(service, {"callerid": node, **header})
     return seen
 
 
-def test_a_call_of_a_node_that_is_not_synchronised_is_handled_and_noted(server):
+def test_a_call_of_a_node_that_is_not_synchronised_is_noted(server):
     server.call("/gazebo/reset_simulation", "/rosservice")
-    assert server.handled == ["/gazebo/reset_simulation"]
     assert server.noted == [
         "the service /gazebo/reset_simulation was called by /rosservice, which is not synchronized"
     ]
@@ -48,8 +33,10 @@ def test_a_service_is_noted_once(server):
 
 
 def test_a_call_of_a_synchronised_node_waits_and_is_not_noted(server):
-    server.call("/move_base/clear_costmaps", "/pick_objects", moment="7")
-    server.call("/move_base/clear_costmaps", "/pick_objects")
+    server.call("/move_base/clear_costmaps", "/pick_objects", **call_headers(7))
+    assert caller() == "/pick_objects"
+    server.call("/move_base/clear_costmaps", "/pick_objects", **call_headers(0))
+    assert caller() == ""
     assert server.waited == [7]
     assert server.noted == []
 

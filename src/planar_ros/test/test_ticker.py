@@ -7,21 +7,17 @@ import pytest
 import rospy
 
 from planar_ros.lockstep.ticker import Ticker
+from rospy_transport.node import set_time, unregistered_node
 
 PERIOD = 0.1
 
 
 @pytest.fixture
-def clock(monkeypatch):
+def clock():
     """Sets ROS time [s] and wakes waiting threads."""
-    monkeypatch.setattr(rospy.rostime, "_rostime_initialized", True)
-    rospy.rostime._set_rostime(rospy.Time(0))
-
-    def set_to(seconds):
-        rospy.rostime._set_rostime(rospy.Time.from_sec(seconds))
-
-    yield set_to
-    rospy.rostime.switch_to_wallclock()
+    with unregistered_node():
+        set_time(rospy.Time(0))
+        yield lambda seconds: set_time(rospy.Time.from_sec(seconds))
 
 
 class Node:
@@ -46,7 +42,7 @@ class Node:
 
     def end(self):
         self._has_ended.set()
-        rospy.rostime._set_rostime(rospy.Time(1000))
+        set_time(rospy.Time(1000))
         self._thread.join(10.0)
 
 

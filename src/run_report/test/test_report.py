@@ -7,11 +7,11 @@ from PIL import Image
 
 from planar import FileWriteError
 from run_report import RecordError, RunRecord, load_record, summary, write_report, writing
-from run_report.charts import nice_ticks
+from run_report.charts import nice_ticks, timeline
 from run_report.figures import localization_errors, real_time_factors
 from run_report.page import report_html
 from run_report.picture import run_frames, run_picture
-from run_report.record import EVENTS, SERIES, save_record
+from run_report.record import EVENTS, SERIES, StateEvent, save_record
 
 VOID = {"meta", "link", "input", "br"}
 FILES = ["record.json", "report.html", "run.gif", "run.png"]
@@ -73,6 +73,25 @@ def test_a_broken_record_is_refused_by_name(content, tmp_path):
         load_record(tmp_path)
     with pytest.raises(RecordError, match="no such file"):
         load_record(tmp_path / "elsewhere")
+
+
+def test_states_that_end_a_mission_have_the_colours_of_their_meaning():
+    names = ["ready", "going to pickup", "picking up", "going to dropoff", "delivered", "setting down"]
+    page = timeline([StateEvent(float(stamp), name) for stamp, name in enumerate(names)], 6.0)
+    tones = dict(re.findall(r'<li class="(\w+)">([\w ]+) <small>', page))
+    assert tones == {
+        **{f"tone{number}": name for number, name in enumerate(names[:4])},
+        "delivered": "delivered",
+        "tone4": "setting down",
+    }
+    style = report_html({}, RunRecord())
+    assert ".delivered { --tone: var(--good); } .failed { --tone: var(--bad); }" in style
+
+
+def test_a_delivery_shows_its_retries_instead_of_the_goals_that_it_needs_anyway(record, result):
+    deliveries = [{"name": "tea", "attempts": 2, "retries": 0}, {"name": "cup", "attempts": 5, "retries": 3}]
+    text = Page(report_html({**result, "deliveries": deliveries}, record)).text
+    assert "nameretriestea0cup3" in text
 
 
 def test_errors_are_taken_between_poses_of_the_same_moment(record):

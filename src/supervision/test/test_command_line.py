@@ -83,3 +83,22 @@ def test_help_is_the_usage(capsys):
     with pytest.raises(SystemExit):
         parse(Wash, ["--help"], "wash.sh")
     assert capsys.readouterr().out == usage(Wash, "wash.sh")
+
+
+@dataclass(frozen=True)
+class Dry:
+    """Dries the dishes."""
+
+    dishes: Tuple[str, ...] = argument("what to dry", default=(), nargs="*", metavar="DISH")
+    quick: bool = option(False, "not wholly")
+
+
+def test_options_may_stand_between_arguments():
+    assert parse(Dry, ["cup", "--quick", "pan"], "dry.sh") == Dry(("cup", "pan"), True)
+    assert parse(Dry, [], "dry.sh") == Dry()
+
+
+def test_help_lists_arguments_between_which_options_may_stand(capsys):
+    with pytest.raises(SystemExit):
+        parse(Dry, ["cup", "--help"], "dry.sh")
+    assert "  DISH        what to dry\n" in capsys.readouterr().out

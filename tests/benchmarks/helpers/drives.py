@@ -10,7 +10,7 @@ import numpy as np
 
 from planar import FREE, OCCUPIED, OccupancyGrid, Pose2, Scan, Twist2, wrap
 from planar.geometry.distance_field import distance_field
-from sim_bridge import Simulation, SimulationSettings, robot_named
+from sim_bridge import Episode, Simulation, SimulationSettings, robot_named
 from sim_bridge.world import World
 
 # How far the driver keeps from walls, and how near to a waypoint it takes the next, metres.
@@ -125,10 +125,11 @@ def drive(
 ) -> List[Observation]:
     """Drive for some simulated seconds by ``driver.command``; the map frame is the world frame."""
     simulation = Simulation(world, robot_named(robot), settings, seed, start or Pose2())
+    episode = Episode(simulation, simulation.step_seconds)
     observations, before, command = [], [], None
     try:
         for _ in range(round(seconds / simulation.step_seconds)):
-            seen = simulation.step(command)
+            seen = episode.step(command)
             base_in_odom, command = seen.odometry.base_in_odom, None
             if seen.scan is None:
                 before.append((seen.stamp, base_in_odom))

@@ -96,12 +96,18 @@ class BoxPlacer:
             if solid.pose is not None:
                 was_carried = before is not None and before.pose is None
                 beside = robot if was_carried else solid.pose
-                self.placed[solid.name] = self._place_beside(beside, solid.size, robot)
+                self.placed[solid.name] = self.room_beside(beside, solid.size, robot)
             orders.append(PlaceBox(solid, self.placed.get(solid.name)))
         return orders
 
-    def _place_beside(self, pose: Pose2, size: float, robot: Pose2) -> Pose2:
-        """Return a free pose next to a robot at ``pose``; the one in front of it if none is free."""
+    def room_beside(self, pose: Pose2, size: float, robot: Pose2) -> Pose2:
+        """Return a free pose next to a robot at ``pose``; the one in front of it if none is free.
+
+        Args:
+            pose: Pose of a place in the map.
+            size: Width of the object that is to stand beside it [m].
+            robot: Pose of the robot in the map, which is not free either.
+        """
         others = [(at, self._solids[name].size) for name, at in self.placed.items()]
         others.append((robot, ROBOT_SIZE))
         places = [pose @ Pose2(0.0, 0.0, angle) @ Pose2(GAP + size / 2.0, 0.0) for angle in ANGLES]

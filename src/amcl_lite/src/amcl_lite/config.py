@@ -208,7 +208,7 @@ class LocalizerSettings:
     refine_pose: bool = parameter(True, "improve the estimate and a tenth of the particles by scan matching")
     recover_when_lost: bool = parameter(True, "when scans do not fit the map, add particles where they do")
     update_when_still: float = parameter(
-        0.0,
+        0.05,
         "how often a robot that does not move is localized nevertheless; 0: never",
         "Hz",
         Interval(0.0),

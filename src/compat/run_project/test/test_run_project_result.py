@@ -7,6 +7,9 @@ from types import SimpleNamespace
 import fastjsonschema
 import pytest
 
+from evaluation.event_stream import EventStream
+from evaluation.events import SUCCEEDED, GoalEnded, GoalRequested, MarkerUpdated, TruthUpdated
+from planar import Pose2
 from run_project import cli
 from run_project.judging.run_record import ProjectRunRecord
 from run_project.options import parse
@@ -22,11 +25,15 @@ class FakeRun:
     """Fake of a run in which a goal is reached, or which is interrupted."""
 
     def __init__(self, is_interrupted):
-        record = ProjectRunRecord()
-        record.add_goal(1.0, "goal", (1.0, 0.5))
-        record.update_position((1.0, 0.6))
-        record.update_status(2.0, "goal", 3, "")
-        record.update_marker(3.0, ("cube", 0), (1.0, 0.5))
+        record, events = ProjectRunRecord(lambda line: None), EventStream()
+        record.attach(events)
+        for event in (
+            GoalRequested(1.0, "goal", "map", Pose2(1.0, 0.5)),
+            TruthUpdated(1.5, Pose2(1.0, 0.6)),
+            GoalEnded(2.0, "goal", SUCCEEDED, ""),
+            MarkerUpdated(3.0, "cube", 0, (1.0, 0.5, 0.0)),
+        ):
+            events.publish(event)
         self.observer = SimpleNamespace(record=record, simulated_time=12.34)
         self.user = None
         self._is_interrupted = is_interrupted

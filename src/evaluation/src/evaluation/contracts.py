@@ -1,20 +1,32 @@
-"""Contracts of the observers of a run.
+"""Contracts of the consumers of a run's events.
 
-Both are created before the graph and started once there is a master and the process is a node. They must not
-slow the run down. At the end they are asked for their results, even if they were never started because the
+They are created before the graph and attached once there is a master and the process is a node. They must not
+slow the run down. At the end they are asked for their results, even if they were never attached because the
 graph did not come up.
 """
 
 from typing import Any, Dict, Protocol
 
+from evaluation.event_stream import EventStream
 from run_report import RunRecord
 
 
-class Judge(Protocol):
-    """Observes ground truth and computes figures."""
+class Consumer(Protocol):
+    """Consumes events of a run."""
 
-    def start(self) -> None:
-        """Start to observe."""
+    def attach(self, events: EventStream) -> None:
+        """Subscribe to events."""
+
+
+class Figure(Consumer, Protocol):
+    """Computes fields of result.json."""
+
+    def result_fields(self) -> Dict[str, Any]:
+        """Return fields of result.json; none if it was not attached."""
+
+
+class Judge(Figure, Protocol):
+    """Observes ground truth and computes figures."""
 
     def has_truth(self) -> bool:
         """Whether the true pose of the robot has been received."""
@@ -22,15 +34,9 @@ class Judge(Protocol):
     def status(self) -> str:
         """Return the current state in one line for people."""
 
-    def result_fields(self) -> Dict[str, Any]:
-        """Return fields of result.json; none if it was not started."""
 
-
-class Recorder(Protocol):
+class Recorder(Consumer, Protocol):
     """Records what the report shows."""
-
-    def start(self) -> None:
-        """Start to record."""
 
     def record(self) -> RunRecord:
         """Return everything recorded so far."""

@@ -61,6 +61,7 @@ class DeliveryMonitor:
         self._stages[delivery.name] = stage
         record.state, record.attempts, record.reason = _stage_name(stage), attempts, reason
         if stage.value <= DeliveryStage.DELIVERED.value:
+            record.retries = max(attempts - _drives(stage), 0)
             stages = before, stage.value
             record.pickup_error = self._error(PICK_UP, delivery.source, record.pickup_error, stages, truth)
             record.dropoff_error = self._error(
@@ -96,6 +97,13 @@ class DeliveryMonitor:
         elif error > ARRIVAL_TOLERANCE:
             self._log(f"{action.text} at {name}: truly {error:.3f} m from it")
         return error
+
+
+def _drives(stage: DeliveryStage) -> int:
+    """Number of places to which a delivery has sent the robot, each with one goal if nothing goes wrong."""
+    if stage is DeliveryStage.WAITING:
+        return 0
+    return 1 if stage.value < DeliveryStage.CARRYING.value else 2
 
 
 def _stage_name(stage: DeliveryStage) -> str:

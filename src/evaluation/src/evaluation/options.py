@@ -1,33 +1,39 @@
 """Options shared by several commands, as frozen dataclasses to inherit from."""
 
-import argparse
 import math
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any, Dict, Mapping, Optional, Tuple
 
-from supervision.command_line import number, option, seconds, seed
+from supervision.command_line import option, seconds, seed
+from supervision.view_options import ViewOptions
 
 ROOT = Path(__file__).resolve().parents[4]
-MAX_SPEED = 1000.0
+HOME_WORLD, HOME_MAP = ROOT / "map/home.world", ROOT / "map/home.yaml"
 RUN_SECONDS = 900.0
 # Options that are written to result.json under their names.
 RESULT_OPTIONS = ("seed", "world", "robot", "map", "mission")
 
 
-def speed_factor(text: str) -> float:
-    speed = number(text)
-    if not 0.0 <= speed <= MAX_SPEED:
-        raise argparse.ArgumentTypeError(f"{text} is not between 0 and {MAX_SPEED:g}")
-    return speed
+def robot_name(text: str) -> str:
+    """Return the name of a robot, or the absolute path of its file, which is read by other processes."""
+    from sim_bridge.robots import FILE_SUFFIXES  # late: imports much of the simulator
+
+    is_relative = text.endswith(FILE_SUFFIXES) and not text.startswith("~")
+    return str(Path(text).absolute()) if is_relative else text
 
 
 @dataclass(frozen=True)
 class WorldOptions:
     """World, robot and seed."""
 
-    world: Path = option(ROOT / "map/home.world", "SDF world", type=Path)
-    robot: str = option("turtlebot_lidar", "robot profile of sim_bridge", metavar="NAME")
+    world: Path = option(HOME_WORLD, "SDF world", type=Path)
+    robot: str = option(
+        "turtlebot_lidar",
+        "robot profile of sim_bridge, or a .urdf or .xacro file",
+        type=robot_name,
+        metavar="NAME|FILE",
+    )
     seed: int = option(0, "seed of all noise and particles", type=seed)
 
 
@@ -35,7 +41,12 @@ class WorldOptions:
 class HomeOptions(WorldOptions):
     """A world with a map."""
 
-    map: Path = option(ROOT / "map/home.yaml", "map of that world", type=Path)
+    map: Path = option(HOME_MAP, "map of that world", type=Path)
+
+    @property
+    def lacks_map(self) -> bool:
+        """Whether another world than the home was chosen without a map of it."""
+        return self.map is HOME_MAP and self.world.resolve() != HOME_WORLD.resolve()
 
     def files(self) -> Dict[str, Any]:
         """Return the files as arguments of launch files."""
@@ -115,43 +126,20 @@ class LaunchPlan:
 
 
 @dataclass(frozen=True)
-class RunOptions:
+class RunOptions(ViewOptions):
     """A run of a graph, which writes a run folder."""
 
-    speed: Optional[float] = option(
-        None,
-        "1 real time, N times that, 0 as fast as the nodes keep up (default: 0, with --rviz or --web 1)",
-        type=speed_factor,
-    )
-    rviz: bool = option(False, "show it in rviz, if there is a display")
-    web: bool = option(
-        False,
-        "show it in the browser: prints the URL of the page (docs/how_to/watch_in_the_browser.md)",
-    )
-    web_port: Optional[str] = option(
-        None,
-        "address of that page (default: a free port of 127.0.0.1); implies --web",
-        metavar="[ADDRESS:]PORT",
-    )
     timeout: Optional[float] = option(
         None,
         f"the run fails after N seconds of wall time (default: {RUN_SECONDS:g}; never for what Ctrl-C ends)",
         type=seconds,
     )
     gif: bool = option(False, "also leave run.gif, the run as an animation")
-    output: Path = option(
-        Path("runs"), "folder in which the run folder is created", type=Path, metavar="FOLDER"
-    )
 
     @property
     def name(self) -> str:
         """Name of the command, which is that of its module."""
         return type(self).__module__.rpartition(".")[2]
-
-    @property
-    def is_interactive(self) -> bool:
-        """Whether Ctrl-C is the intended end of the run."""
-        return False
 
     @property
     def tool(self) -> Optional[str]:
@@ -164,21 +152,6 @@ class RunOptions:
         if self.timeout is not None:
             return self.timeout
         return math.inf if self.is_interactive else RUN_SECONDS
-
-    @property
-    def effective_speed(self) -> float:
-        """Simulated seconds per wall-clock second; 0: as fast as the nodes keep up."""
-        return float(self.has_view) if self.speed is None else self.speed
-
-    @property
-    def has_view(self) -> bool:
-        """Whether the run is shown in rviz or in the browser."""
-        return self.rviz or self.shows_cockpit
-
-    @property
-    def shows_cockpit(self) -> bool:
-        """Whether the run is shown in the browser."""
-        return self.web or self.web_port is not None
 
     def result_fields(self) -> Dict[str, Any]:
         """Return the options that are written to result.json."""

@@ -20,6 +20,7 @@ class DeliveryRecord:
         destination: Place where it is set down.
         state: Last published state.
         attempts: Goals sent for it.
+        retries: Goals beyond one to each of its places.
         reason: Why it failed.
         pickup_error: True distance from the nearest pose of the source at the pick-up, before it on
             arrival [m].
@@ -32,6 +33,7 @@ class DeliveryRecord:
     destination: str
     state: str = "waiting"
     attempts: int = 0
+    retries: int = 0
     reason: str = ""
     pickup_error: Optional[float] = None
     dropoff_error: Optional[float] = None
@@ -45,6 +47,7 @@ class DeliveryRecord:
             "to": self.destination,
             "state": self.state,
             "attempts": self.attempts,
+            "retries": self.retries,
             "reason": self.reason,
             "pickup_error": self.pickup_error and round(self.pickup_error, 4),
             "dropoff_error": self.dropoff_error and round(self.dropoff_error, 4),

@@ -1,48 +1,67 @@
-"""Solid objects of a mission as boxes in a headless simulation."""
+"""Solid objects of a mission as boxes in an episode."""
 
-from typing import List, Sequence, Set
+from collections import deque
+from typing import Deque, List
 
-from add_markers import BoxPlacer, PlaceBox, SolidBox
+from add_markers import MissionBoxes, PlaceBox, SolidBox
 from add_markers.boxes import HEIGHT, MASS, RIDING_HEIGHT
+from headless_mission.errand import ErrandHooks
 from pick_objects import Errand
 from planar import OccupancyGrid, Pose2
-from sim_bridge import Simulation
+from sim_bridge import Episode, EpisodeHooks, Simulation, StepResult
 from sim_bridge.simulation import box_on_floor
 
+# Control periods from a change of the mission to the box: that of the message to add_markers, and that of its
+# service calls, which the simulator answers at the next instant (docs/explanation/deterministic_runs.md).
+MESSAGE_AND_CALL = 2
 
-class HeadlessBoxes:
-    """Moves the boxes as the mission proceeds."""
 
-    def __init__(self, simulation: Simulation, grid: OccupancyGrid):
-        self._simulation = simulation
-        self._placer = BoxPlacer()
-        self._placer.grid = grid
-        self._spawned: Set[str] = set()
+class BoxHooks(EpisodeHooks):
+    """Moves the boxes as the mission proceeds, as add_markers does over ROS.
 
-    def update(self, solids: Sequence[SolidBox], robot: Pose2) -> None:
-        """Move the boxes to where they belong.
+    Args:
+        simulation: Simulation with the robot.
+        grid: Map in which boxes are placed.
+        errand: The mission.
+    """
 
-        Args:
-            solids: All solid objects.
-            robot: True pose of the robot.
-        """
-        for order in self._placer.update(solids, robot):
-            if isinstance(order, PlaceBox):
-                self._place(order, robot)
+    def __init__(self, simulation: Simulation, grid: OccupancyGrid, errand: ErrandHooks):
+        self._simulator, self._errand = SimulatedBoxes(simulation), errand
+        self._boxes = MissionBoxes(self._simulator)
+        self._boxes.set_map(grid)
+        self._sent: Deque[List[SolidBox]] = deque()
 
-    def _place(self, order: PlaceBox, robot: Pose2) -> None:
-        scene, name, size = (
-            self._simulation.scene,
-            order.solid.name,
-            (order.solid.size, order.solid.size, HEIGHT),
-        )
-        if name in self._spawned:
-            scene.remove_model(name)
-        self._spawned.add(name)
+    def at_tick(self, episode: Episode, step: StepResult) -> None:
+        self._simulator.robot = step.base_in_world
+        if self._errand.is_started:
+            self._sent.append(boxes_of(self._errand.errand))
+        if len(self._sent) > MESSAGE_AND_CALL:
+            self._boxes.update(self._sent.popleft())
+
+
+class SimulatedBoxes:
+    """Boxes in a simulation (add_markers: BoxSimulator).
+
+    Attributes:
+        robot: True pose of the robot.
+    """
+
+    def __init__(self, simulation: Simulation):
+        self._simulation, self.robot = simulation, Pose2()
+
+    def robot_in_world(self) -> Pose2:
+        return self.robot
+
+    def remove(self, name: str) -> None:
+        self._simulation.scene.remove_model(name)
+
+    def spawn(self, order: PlaceBox) -> None:
+        name, edge, scene = order.solid.name, order.solid.size, self._simulation.scene
+        size = (edge, edge, HEIGHT)
         if order.pose is not None:
             scene.add([box_on_floor(name, size, order.pose, MASS)])
         else:
-            scene.add([box_on_floor(name, size, robot, MASS, height=RIDING_HEIGHT)])
+            scene.add([box_on_floor(name, size, self.robot, MASS, height=RIDING_HEIGHT)])
             scene.attach(self._simulation.base, f"{name}::link")
 
 

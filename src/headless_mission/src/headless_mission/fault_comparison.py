@@ -5,8 +5,10 @@ from datetime import date
 from typing import Dict, Sequence
 
 from evaluation.verdict import collision
+from headless_mission.conditions import EpisodeConditions
 from headless_mission.inputs import MissionInputs
-from headless_mission.mission import EpisodeConditions, EpisodeResult, HeadlessMission, parcel_for
+from headless_mission.mission import HeadlessMission, parcel_for
+from headless_mission.result import EpisodeResult
 from sim_bridge.faults import KINDS, Fault, default_strength
 from supervision.versions import provenance
 

@@ -3,12 +3,22 @@
 from dataclasses import dataclass
 from typing import Iterable, Mapping
 
-from evaluation.options import ErrandOptions, HomeOptions, MissionOptions, WorldOptions
+from evaluation.options import (
+    ErrandOptions,
+    GraphOptions,
+    HomeOptions,
+    MappingOptions,
+    MissionOptions,
+    WorldOptions,
+)
 from pick_objects import Mission, errand_mission, load_mission
 from planar import OccupancyGrid, Pose2, SettingsError, load_map
 from planar.maps.places import NamedPlace, load_pickup_and_dropoff, load_places, unreachable_reason
 from sim_bridge import RobotProfile, load_world, robot_named
 from sim_bridge.world import World
+
+# Frames of the launch files of localization, SLAM and navigation (REP 105).
+ODOM_FRAME, BASE_FRAME = "odom", "base_footprint"
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,9 +54,45 @@ def read_world(options: WorldOptions) -> WorldInputs:
 
 
 def read_home(options: HomeOptions) -> HomeInputs:
-    """Read world, robot and map."""
-    world, grid = load_world(options.world), load_map(options.map)
-    return HomeInputs(world, robot_named(options.robot), grid)
+    """Read world, robot and map; over ROS, the robot must publish the frames of navigation."""
+    if options.lacks_map:
+        stem = options.world.with_suffix("")
+        raise SettingsError(
+            f"{options.world}: no map given, and map/home.yaml is that of map/home.world;\n"
+            f"  ./scripts/map_home.sh --world {options.world} --save {stem}\n"
+            f"makes one for --map {stem}.yaml"
+        )
+    world, grid, robot = load_world(options.world), load_map(options.map), robot_named(options.robot)
+    if isinstance(options, GraphOptions):
+        check_frames(options.robot, robot)
+    return HomeInputs(world, robot, grid)
+
+
+def read_mapped_world(options: MappingOptions) -> WorldInputs:
+    """Read world and robot; the robot must publish the frames that SLAM uses."""
+    stage = read_world(options)
+    check_frames(options.robot, stage.robot)
+    return stage
+
+
+def check_frames(name: str, robot: RobotProfile) -> None:
+    """Check that a robot publishes the transform from which localization and navigation start.
+
+    Args:
+        name: Its name or file, for the message.
+        robot: The robot.
+
+    Raises:
+        SettingsError: It publishes other frames, or none.
+    """
+    odometry = robot.odometry
+    published = f"{odometry.frame} -> {odometry.base_frame}" if odometry.sends_transform else "no transform"
+    is_complete = odometry.sends_transform and BASE_FRAME in robot.frames_below(odometry.base_frame)
+    if odometry.frame != ODOM_FRAME or not is_complete:
+        raise SettingsError(
+            f"{name}: its odometry publishes {published}, but localization and navigation expect "
+            f"{ODOM_FRAME} -> {BASE_FRAME}; set odometryFrame, robotBaseFrame and publishTf of its drive"
+        )
 
 
 def read_goals(options: HomeOptions, goals: Iterable[Pose2]) -> HomeInputs:

@@ -9,7 +9,7 @@ import numpy as np
 from home_service_gym.traversable_space import TraversableSpace
 from laboratory.worlds.source import Arena
 from planar import Pose2, Scan, Twist2
-from sim_bridge import RobotProfile, Simulation, SimulationSettings, StepResult
+from sim_bridge import Episode, RobotProfile, Simulation, SimulationSettings, StepResult
 from sim_bridge.people.crowd import body_of
 from sim_bridge.scripted_trajectories import ScriptedTrajectory
 from sim_bridge.sensors.lidar import LaserProfile
@@ -65,6 +65,7 @@ class EpisodeSimulation:
         self.arena, self.start = arena, start
         settings = replace(noise, odometry_rate=rate, scan_rate=rate)
         self._simulation = Simulation(arena.world, with_lidar_only(robot), settings, 0, start)
+        self._episode = Episode(self._simulation, self._simulation.step_seconds)
         self._simulation.mark()
 
     @cached_property
@@ -92,7 +93,7 @@ class EpisodeSimulation:
 
     def step(self, command: Twist2) -> EpisodeState:
         """Drive for one control period."""
-        step = self._simulation.step(command)
+        step = self._episode.step(command)
         return _state_of(step, self._simulation.scene.crowd.rows)
 
     def trajectory_positions(self, trajectories: Sequence[ScriptedTrajectory], stamp: float) -> np.ndarray:

@@ -11,7 +11,7 @@ from planar import FREE
 from planar.deprecation import deprecated_names
 from planar.extensions import PluginError
 from planar.extensions.check import expect, run_checks, same_results, suite
-from sim_bridge import Simulation
+from sim_bridge import Episode, Simulation
 
 SEEDS = range(5)
 
@@ -50,7 +50,8 @@ def _first_scans(arena: Arena) -> bytes:
     """The scans of a robot at the origin in the first 0.2 s."""
     simulation = Simulation(arena.world)
     try:
-        scans = [scan for _ in range(40) for scan in simulation.step().scans]
+        episode = Episode(simulation, simulation.step_seconds)
+        scans = [scan for _ in range(40) for scan in episode.step().scans]
         return b"".join(scan.ranges.tobytes() for scan in scans)
     finally:
         simulation.close()

@@ -16,7 +16,8 @@ from move_base_lite.errors import (
     PluginFailed,
     StartBlocked,
 )
-from move_base_lite.navigator import Decision, Navigator, Status
+from move_base_lite.move_base import MoveBase, PoseHistory
+from move_base_lite.navigator import Decision, Navigator, NavigatorInputs, RobotState, Status
 from move_base_lite.parameters import load_settings, settings_from_parameters
 from move_base_lite.planning import GlobalPlanner, PlannerSettings, PlanRequest
 from move_base_lite.recovery import RecoveryBehavior, RecoveryContext, RecoverySettings
@@ -34,8 +35,10 @@ __all__ = [
     "LayerContext",
     "LayerSettings",
     "LocalPlanner",
+    "MoveBase",
     "NavigationError",
     "Navigator",
+    "NavigatorInputs",
     "NavigatorSettings",
     "NoPath",
     "OutOfMap",
@@ -44,9 +47,11 @@ __all__ = [
     "PlannerSettings",
     "PlanningError",
     "PluginFailed",
+    "PoseHistory",
     "RecoveryBehavior",
     "RecoveryContext",
     "RecoverySettings",
+    "RobotState",
     "ControlContext",
     "StartBlocked",
     "Status",

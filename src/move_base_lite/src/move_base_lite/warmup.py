@@ -6,7 +6,8 @@ import numpy as np
 
 from move_base_lite.config import NavigatorSettings
 from move_base_lite.control.escape import escape_command
-from move_base_lite.navigator import Navigator
+from move_base_lite.costmap import observation_from_scan
+from move_base_lite.navigator import Navigator, NavigatorInputs, RobotState
 from planar import OccupancyGrid, Pose2, Scan, Twist2
 
 
@@ -24,5 +25,6 @@ def warm_up(settings: NavigatorSettings) -> None:
     navigator.set_goal(Pose2(5.0, 3.0))
     for tick in range(2):
         scan = Scan(float(tick), -0.1, 0.1, ranges, 0.1, 10.0)
-        navigator.tick(float(tick), start, start, Twist2(), scan)
+        observation = observation_from_scan(settings.scan_topic, scan)
+        navigator.tick(RobotState(float(tick), start, start, Twist2()), NavigatorInputs((observation,)))
     escape_command(navigator.local_costmap, start)

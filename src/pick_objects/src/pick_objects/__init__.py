@@ -5,6 +5,7 @@ from pick_objects.arrival import ArrivalCheck, RecentScanFit, ResendGoal
 from pick_objects.checkpoint import checkpoint_of, resume_errand
 from pick_objects.config import ErrandSettings
 from pick_objects.errand import Errand, MeasurePathLengths, PathLengthsMeasured
+from pick_objects.goal_driver import GoalDriver, MoveBasePort
 from pick_objects.job import DeliveryJob, DeliveryStage, ErrandState, ObjectLocation
 from pick_objects.mission import Delivery, Mission, MissionError, MissionObject, errand_mission
 from pick_objects.mission_file import load_mission, parse_mission
@@ -20,6 +21,7 @@ __all__ = [
     "ErrandSettings",
     "ErrandState",
     "FinishTask",
+    "GoalDriver",
     "RobotDisplaced",
     "GoalReached",
     "GoalFailed",
@@ -27,6 +29,7 @@ __all__ = [
     "Mission",
     "MissionError",
     "MissionObject",
+    "MoveBasePort",
     "ObjectLocation",
     "PathLengthsMeasured",
     "RecentScanFit",

@@ -10,6 +10,9 @@ from run_report.map_view import thinned
 from run_report.record import StateEvent
 
 HEIGHT = 100.0
+# States that end a mission have fixed colours; others take turns.
+FINAL_STATES = ("delivered", "failed", "cancelled")
+TONES = 6
 
 
 class ChartLine(NamedTuple):
@@ -63,11 +66,14 @@ def timeline(states: Sequence[StateEvent], end: float) -> str:
     """Return a bar of states over 0..end seconds with a legend."""
     if not states or end <= 0.0:
         return ""
-    names = list(dict.fromkeys(state.name for state in states))
+    names = dict.fromkeys(state.name for state in states)
+    passing = [name for name in names if name not in FINAL_STATES]
+    tones = {name: f"tone{number % TONES}" for number, name in enumerate(passing)}
+    tones.update({name: name for name in FINAL_STATES})
     ends = [state.stamp for state in states[1:]] + [end]
     bars, rows = [], []
     for state, until in zip(states, ends):
-        tone = f"tone{names.index(state.name) % 8}"
+        tone = tones[state.name]
         left, width = 100.0 * state.stamp / end, max(100.0 * (until - state.stamp) / end, 0.3)
         text = f"{state.name}: {state.stamp:.1f} to {until:.1f} s"
         bars.append(

@@ -7,6 +7,7 @@ from planar.deprecation import deprecated_names
 
 if TYPE_CHECKING:
     from sim_bridge.config import SimulationSettings
+    from sim_bridge.episode import Episode, EpisodeHooks
     from sim_bridge.errors import RobotError, WorldError
     from sim_bridge.robot import RobotWrappers, StepResult
     from sim_bridge.robots import ROBOTS, RobotProfile, robot_named
@@ -15,6 +16,8 @@ if TYPE_CHECKING:
     from sim_bridge.simulation import Simulation
 
 __all__ = [
+    "Episode",
+    "EpisodeHooks",
     "ROBOTS",
     "RobotError",
     "RobotProfile",
@@ -30,6 +33,7 @@ __all__ = [
 
 _MODULES = {
     "config": ("SimulationSettings",),
+    "episode": ("Episode", "EpisodeHooks"),
     "errors": ("RobotError", "WorldError"),
     "robot": ("RobotWrappers", "StepResult"),
     "robots": ("ROBOTS", "RobotProfile", "robot_named"),

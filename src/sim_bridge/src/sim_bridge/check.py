@@ -11,12 +11,13 @@ import numpy as np
 from planar import Pose2, Scan, Twist2
 from planar.deprecation import deprecated_names
 from planar.extensions.check import expect, expect_unchanged, run_checks, same_results, suite
-from sim_bridge.faults import Fault, FaultContext, FaultInjector, kind_named
+from sim_bridge.episode import Episode
+from sim_bridge.faults import Fault, FaultInjector, kind_named
 from sim_bridge.faults.kind import CONTRACT
 from sim_bridge.faults.registry import make_fault
 from sim_bridge.geometry.shapes import Plane
 from sim_bridge.sensors.odometry import Odometry
-from sim_bridge.simulation import ROBOT_NAME, Simulation, box_on_floor
+from sim_bridge.simulation import Simulation, box_on_floor
 from sim_bridge.world import Body, Collision, World
 
 SPEED, SECONDS, BEGIN, END = Twist2(0.3, 0.4), 1.0, 0.3, 0.7
@@ -56,12 +57,10 @@ def _run(kind: str) -> List[Tuple[str, bytes]]:
     floor = Body("floor::link", np.eye(4), (Collision(Plane(), np.eye(4)),))
     world = World("room", (floor, box_on_floor("box", (0.5, 0.5, 1.0), Pose2(2.0, 0.3))))
     simulation, measured = Simulation(world, wrappers=faults.wrappers), []
+    episode = Episode(simulation, simulation.step_seconds, faults=faults)
     try:
-        result = simulation.step(SPEED)
-        while result.stamp < SECONDS:
-            context = FaultContext(simulation.scene, ROBOT_NAME, result.base_in_world)
-            faults.update(result.stamp, context)
-            result = simulation.step(SPEED)
+        for _ in range(round(SECONDS / simulation.step_seconds)):
+            result = episode.step(SPEED)
             scans = b"".join(scan.ranges.tobytes() for scan in result.scans)
             measured.append((repr((result.truth, result.odometry)), scans))
     finally:

@@ -228,7 +228,7 @@ class Robot:
         """
         if step % self._interval == 0:
             seconds = self._interval / self._settings.physics_rate
-            self.vehicle.drive(*self._drive.wheel_speeds(seconds))
+            self.vehicle.drive(*self._drive.wheel_speeds(seconds), seconds)
 
     def end_steps(self, step: int, stamp: float) -> None:
         """Run the measurements of the sensors that are due.

@@ -51,7 +51,13 @@ def parse(
         script: Name of the program in messages.
         allow_abbreviations: Accept unique prefixes of options.
     """
-    given = vars(_parser(kind, script, allow_abbreviations).parse_args(words))
+    parser = _parser(kind, script, allow_abbreviations)
+    if any(item.metadata.get("nargs") == "*" for item in fields(kind)):  # type: ignore[arg-type]
+        if not {"-h", "--help"}.isdisjoint(words):  # the next method prints no placeholders
+            parser.parse_args(["--help"])
+        given = vars(parser.parse_intermixed_args(words))
+    else:
+        given = vars(parser.parse_args(words))
     return kind(**{name: tuple(value) if isinstance(value, list) else value for name, value in given.items()})
 
 
@@ -107,7 +113,7 @@ def _settings(item: "Field[Any]") -> Dict[str, Any]:
     metavar = _metavar(item, how)
     if metavar:
         how.setdefault("metavar", metavar)
-    default = _shown_default(item.default)
+    default = _shown_default(item.default) if "flag" in how else ""
     how[MEANING] = (how[MEANING] + (f" (default: {default})" if default else "")).replace("%", "%%")
     return how
 

@@ -1,7 +1,7 @@
 """A marker for each object of a mission: where it stands, or on the robot that carries it."""
 
 import threading
-from typing import Dict
+from typing import Dict, List
 
 import rospy
 from home_service_msgs.msg import MissionState, ObjectState
@@ -25,6 +25,7 @@ class MissionMarkers:
         self._base_frame = settings.base_frame_id
         self._bodies = SimulatedBoxes(settings)
         self._placed: Dict[str, Pose2] = {}
+        self._beside: Dict[str, Pose2] = {}
         self._shown: Dict[str, ObjectState] = {}
         self._frame_id = ""
         # rospy calls peer_subscribe in a separate thread, without the publisher's lock.
@@ -47,8 +48,18 @@ class MissionMarkers:
         self._has_state = True
         placed = dict(self._bodies.follow(message.objects))
         with self._showing:
-            self._placed, self._frame_id = placed, message.header.frame_id
+            self._beside = {state.name: pose for state in message.objects for pose in self._room(state)}
+            self._placed, self._frame_id = {**self._beside, **placed}, message.header.frame_id
             self._show({state.name: state for state in message.objects})
+
+    def _room(self, state: ObjectState) -> List[Pose2]:
+        """Return the pose beside the robot of an object that it has set down: it covers its place."""
+        before = self._shown.get(state.name)
+        if before is None or state.is_carried or state.is_solid:
+            return []
+        if before.is_carried:
+            return [self._bodies.room_beside(pose2_from_msg(state.pose), state.size)]
+        return [self._beside[state.name]] if state.name in self._beside else []
 
     def _show(self, objects: Dict[str, ObjectState]) -> None:
         for name in [name for name in self._shown if name not in objects]:

@@ -6,14 +6,15 @@ import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import Odometry
 from std_msgs.msg import String
-from visualization_msgs.msg import Marker, MarkerArray
+from visualization_msgs.msg import Marker
 
+from add_markers.boxes import RIDING_HEIGHT
 from add_markers.config import MarkerSettings
 from add_markers.parcel import CarriedParcel, ParcelStage, TimedParcel
 from add_markers.ros.mission_markers import MissionMarkers
-from add_markers.ros.zones import zone_markers
+from add_markers.ros.zones import publish_zones
 from planar import Pose2
-from planar.maps.places import load_pickup_and_dropoff
+from planar.maps.places import load_pickup_and_dropoff, load_places
 from planar_ros.lockstep import LockstepClient
 from planar_ros.messages.conversion import pose2_from_msg, pose2_to_msg
 from planar_ros.messages.transforms import Transforms
@@ -39,8 +40,7 @@ class AddMarkersNode:
         self._robot: Optional[Pose2] = None
         self._shown_at: object = NOT_PUBLISHED
         self._publisher = rospy.Publisher("visualization_marker", Marker, queue_size=10, latch=True)
-        self._zones = rospy.Publisher("zones", MarkerArray, queue_size=1, latch=True)
-        self._zones.publish(zone_markers(places, settings.frame_id))
+        self._zones = publish_zones(places, settings.frame_id)
         self._checkpoint: Optional[ParameterCheckpoint] = None
         self._parcel: Union[TimedParcel, CarriedParcel]
         self._locate: Locate
@@ -105,8 +105,10 @@ class AddMarkersNode:
         marker = Marker(ns="parcel", id=0, type=Marker.CUBE)
         marker.header.frame_id = self._settings.frame_id
         marker.pose = pose2_to_msg(pose if pose is not None else self._pickup.pose)
-        marker.pose.position.z = marker.scale.x = marker.scale.y = marker.scale.z = self._settings.size
-        marker.pose.position.z /= 2.0
+        marker.scale.x = marker.scale.y = marker.scale.z = self._settings.size
+        marker.pose.position.z = marker.scale.z / 2.0
+        if isinstance(self._parcel, CarriedParcel) and self._parcel.stage is ParcelStage.DELIVERED:
+            marker.pose.position.z += RIDING_HEIGHT  # on the robot, which covers the place
         marker.color.r, marker.color.g, marker.color.b, marker.color.a = 0.9, 0.4, 0.1, 1.0
         marker.action = Marker.ADD if pose is not None else Marker.DELETE
         self._publisher.publish(marker)
@@ -121,9 +123,10 @@ def main():
         LockstepClient.of_node()
         settings = read_settings(MarkerSettings)
         if settings.mode == "mission":
+            zones = publish_zones(load_places(settings.zones_file).values(), settings.frame_id)
             markers = MissionMarkers(settings)
             LockstepClient.of_node().join()
-            return markers
+            return zones, markers
         return AddMarkersNode(settings).work()
 
     run("add_markers", start)

@@ -3,6 +3,7 @@
 import math
 from typing import Iterable, List
 
+import rospy
 from geometry_msgs.msg import Point
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker, MarkerArray
@@ -10,8 +11,17 @@ from visualization_msgs.msg import Marker, MarkerArray
 from planar.maps.places import NamedPlace
 
 CORNERS = 48
-LINE_WIDTH, TEXT_HEIGHT = 0.03, 0.25
+LINE_WIDTH, TEXT_HEIGHT = 0.05, 0.25
+# Maps and costmaps are drawn below this height.
+HEIGHT = 0.05
 COLOUR = ColorRGBA(0.55, 0.3, 0.95, 1.0)
+
+
+def publish_zones(places: Iterable[NamedPlace], frame_id: str) -> rospy.Publisher:
+    """Publish the zones once, latched; return the publisher, with which they end."""
+    publisher = rospy.Publisher("zones", MarkerArray, queue_size=1, latch=True)
+    publisher.publish(zone_markers(places, frame_id))
+    return publisher
 
 
 def zone_markers(places: Iterable[NamedPlace], frame_id: str) -> MarkerArray:
@@ -46,8 +56,9 @@ def _name(number: int, place: NamedPlace) -> Marker:
     marker.scale.z = TEXT_HEIGHT
     marker.pose.position.x = place.pose.x
     marker.pose.position.y = place.pose.y + place.radius + TEXT_HEIGHT
+    marker.pose.position.z = TEXT_HEIGHT
     return marker
 
 
 def _point(place: NamedPlace, angle: float, distance: float) -> Point:
-    return Point(place.pose.x + distance * math.cos(angle), place.pose.y + distance * math.sin(angle), 0.0)
+    return Point(place.pose.x + distance * math.cos(angle), place.pose.y + distance * math.sin(angle), HEIGHT)

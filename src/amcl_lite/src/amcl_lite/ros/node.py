@@ -29,8 +29,8 @@ from planar_ros.messages.conversion import frame_name
 from planar_ros.messages.scan_queue import ScanQueue
 from planar_ros.messages.transforms import Transforms
 from planar_ros.node.entry import parse_known
+from planar_ros.node.parameters import SettingsReconfigureServer, dynamic_values
 from planar_ros.node.readiness import ReadinessMonitor
-from planar_ros.node.reconfigure import SettingsReconfigureServer, dynamic_values
 from planar_ros.node.runner import run
 
 

@@ -18,8 +18,7 @@ from amcl_lite.localizer import is_valid_initial_pose
 from planar import Pose2
 from planar.config.parameters import official_names
 from planar_ros.node.checkpoint import FileCheckpoint, SavedFile
-from planar_ros.node.parameters import ParameterWriter, read_settings
-from planar_ros.node.reconfigure import RESTORE
+from planar_ros.node.parameters import RESTORE, ParameterWriter, read_settings
 
 # Shortest wall time between two checkpoints [s]: a fast simulation would keep the master busy.
 _LEAST_SECONDS = 0.5

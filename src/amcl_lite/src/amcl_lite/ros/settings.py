@@ -7,8 +7,7 @@ import rospy
 from amcl_lite.config import MOTION_MODELS, SENSOR_MODELS, InitialPose, NodeSettings, settings_warnings
 from planar.config.parameters import official_names
 from planar.config.settings import settings_from
-from planar_ros.node.parameters import read_settings
-from planar_ros.node.reconfigure import RESTORE
+from planar_ros.node.parameters import RESTORE, read_settings
 
 
 def read_node_settings() -> NodeSettings:

@@ -17,8 +17,8 @@ from std_srvs.srv import Empty
 from planar import PlanarError
 from planar_ros.messages.conversion import pose2_from_msg
 from planar_ros.messages.validation import subscribe
-from planar_ros.node.flush import publish_on_shutdown
 from planar_ros.node.runner import fail, run
+from planar_ros.node.topics import publish_on_shutdown
 
 # Standard deviations below which the particles have converged [m, m, rad].
 SETTLED_WITHIN = np.array((0.2, 0.2, 0.1))

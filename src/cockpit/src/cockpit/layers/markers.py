@@ -168,6 +168,6 @@ LAYER = DisplayLayer(
     "Markers",
     ("visualization_msgs/Marker", "visualization_msgs/MarkerArray"),
     MarkerLayer,
-    shown=("visualization_marker", "visualization_marker_array", "markers", "frontiers"),
+    shown=("visualization_marker", "visualization_marker_array", "markers", "frontiers", "zones"),
     needs_all=True,
 )

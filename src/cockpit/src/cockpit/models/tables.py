@@ -8,7 +8,7 @@ STYLE = (
     "margin:0 12px 8px 12px"
 )
 CELL = "padding:0 10px 0 0;vertical-align:top;text-align:left"
-SHORT, LONG = ";white-space:nowrap", ";white-space:pre-wrap;overflow-wrap:anywhere;min-width:180px"
+LINE, TEXT = ";white-space:nowrap", ";white-space:pre-wrap;overflow-wrap:break-word;min-width:180px"
 LONGEST_LINE = 48
 
 
@@ -20,7 +20,9 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
 
 
 def _cell(text: str) -> str:
-    return f'<td style="{CELL}{SHORT if len(text) <= LONGEST_LINE else LONG}">{escape(text)}</td>'
+    """Format a cell; long texts are broken between words, and names never."""
+    is_line = len(text) <= LONGEST_LINE or not any(map(str.isspace, text))
+    return f'<td style="{CELL}{LINE if is_line else TEXT}">{escape(text)}</td>'
 
 
 def paragraph(text: str) -> str:

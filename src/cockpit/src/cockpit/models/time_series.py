@@ -3,7 +3,7 @@
 import math
 import re
 from collections import deque
-from typing import Any, Deque, Dict, List, Tuple
+from typing import Any, Deque, Dict, List, Mapping, Sequence, Tuple
 
 import numpy as np
 
@@ -11,6 +11,8 @@ from cockpit.errors import CockpitError
 
 MOST_SAMPLES, MOST_DRAWN = 6000, 1000
 MOST_LISTED, LONGEST_LISTED, DEEPEST = 120, 6, 6
+# Numbers of each topic that are suggested before a topic is selected.
+MOST_SUGGESTED = 30
 STEP = re.compile(r"(\w+)((?:\[-?\d+\])*)")
 
 
@@ -53,8 +55,26 @@ def number_at(message: Any, path: str) -> float:
 
 
 def numbers_in(message: Any, depth: int = DEEPEST) -> List[str]:
-    """Return the paths of the numbers in a message, with the first elements of arrays."""
-    return _numbers(message, "", depth)[:MOST_LISTED]
+    """Return the paths of the numbers in a message, with the first elements of arrays, headers last."""
+    found = sorted(_numbers(message, "", depth), key=lambda path: "header" in path.split("."))
+    return found[:MOST_LISTED]
+
+
+def suggested(numbers: Mapping[str, Sequence[str]]) -> List[Tuple[str, str]]:
+    """Return the first numbers of each topic, without headers.
+
+    Args:
+        numbers: Paths of the numbers in each topic, as returned by ``numbers_in``.
+
+    Returns:
+        Topic and path of each number.
+    """
+    return [
+        (topic, path)
+        for topic, paths in numbers.items()
+        for path in paths[:MOST_SUGGESTED]
+        if "header" not in path.split(".")
+    ]
 
 
 def _numbers(value: Any, path: str, depth: int) -> List[str]:

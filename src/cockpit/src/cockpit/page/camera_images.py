@@ -1,18 +1,23 @@
 """A window with camera images."""
 
-from typing import Any, Dict
+from typing import Any, Dict, Optional
 
 import numpy as np
 
-from cockpit.page.tool_panel import ToolWindow
+from cockpit.page.window_column import ColumnWindow, WindowColumn
 
 
 class CameraWindow:
-    """A window that exists while there are images to show."""
+    """A window that exists while there are images to show.
 
-    def __init__(self, gui):
-        self._gui = gui
-        self._window: Any = None
+    Args:
+        gui: The gui of viser.
+        windows: Opens the window.
+    """
+
+    def __init__(self, gui, windows: WindowColumn):
+        self._gui, self._windows = gui, windows
+        self._window: Optional[ColumnWindow] = None
         self._images: Dict[str, Any] = {}
         self._shown: Dict[str, int] = {}
 
@@ -31,10 +36,10 @@ class CameraWindow:
 
     def _rebuild(self, pictures: Dict[str, np.ndarray]) -> None:
         if self._window is not None:
-            self._window.remove()
+            self._windows.remove(self._window)
         self._window, self._images, self._shown = None, {}, {}
         if pictures:
-            self._window = ToolWindow(self._gui, "Cameras")
+            self._window = self._windows.open("Cameras")
             with self._window:
                 for topic, picture in sorted(pictures.items()):
                     self._images[topic] = self._gui.add_image(picture, label=topic, jpeg_quality=70)

@@ -1,34 +1,30 @@
 """Access checks, connection limits and message checks in front of the server of viser.
 
-viser 1.1 has no hooks for these, but it serves page and socket with one call of ``websockets``. That call is
-replaced to pass our socket, a check before viser's own, and connections that check each message. viser is
-pinned, and test_connection_guard.py tests this module with the real server.
+The server gets our socket, a check before viser's own, and connections that check each message;
+test_connection_guard.py tests this module with the real server.
 """
 
 import logging
 import socket
 import time
-from contextlib import contextmanager
-from functools import partial
 from http import HTTPStatus
-from typing import Any, Callable, Iterator, Mapping
+from typing import Any, Callable, ContextManager, Mapping, Tuple
 
 import msgspec
-import websockets.asyncio.server as library
-from viser import _messages as forms
 from websockets.exceptions import ConnectionClosed
 
 from cockpit.access import OK, AccessPolicy
 from cockpit.errors import PortError, RefusedError
 from cockpit.inbound import KINDS, LARGEST_MESSAGE, RateLimiter, check
 from cockpit.page.controls import accepts
+from cockpit.page.server_hooks import ClosingError, controls_of, form_of, replacing_server
 from supervision.open_files import allow_open_files
 
 MOST_PAGES = 32
 OPEN_FILES = 4096  # a thousand connections leave enough for ROS
 MOST_REASON = 100  # bytes of a closing reason; the protocol allows a few more
 # The fields of each message kind.
-FORMS = {kind: getattr(forms, kind) for kind in KINDS}
+FORMS = {kind: form_of(kind) for kind in KINDS}
 POLICY = (
     "default-src 'self'; connect-src 'self' ws: data: blob:; img-src 'self' data: blob:; "
     "font-src 'self' data:; style-src 'self' 'unsafe-inline'; worker-src 'self' blob: data:; "
@@ -90,25 +86,20 @@ class ConnectionGuard:
 
     def set_controls(self, gui: Any) -> None:
         """Set the gui of viser, whose controls define which values are accepted."""
-        self._controls = gui._gui_input_handle_from_uuid
+        self._controls = controls_of(gui)
 
-    @contextmanager
-    def guarding(self) -> Iterator[None]:
-        """Guard the server that is started in this context."""
-        serve = library.serve
+    def guarding(self) -> ContextManager[None]:
+        """Return a context in which the server that is started is guarded."""
+        return replacing_server(
+            self._guarded,
+            lambda: _MessageCheck(self._is_acceptable),
+            self._most_connections,
+            max_size=LARGEST_MESSAGE,
+            sock=self._socket,
+        )
 
-        def guarded(handler, _host, _port, *, process_request, **options):
-            connection = partial(_Connection, most=self._most_connections, is_acceptable=self._is_acceptable)
-            options.update(max_size=LARGEST_MESSAGE, create_connection=connection, sock=self._socket)
-            return serve(
-                self._closing_on_error(handler), process_request=self._checked(process_request), **options
-            )
-
-        library.serve = guarded  # type: ignore[assignment, misc]
-        try:
-            yield
-        finally:
-            library.serve = serve  # type: ignore[misc]
+    def _guarded(self, handler: Callable, process_request: Callable) -> Tuple[Callable, Callable]:
+        return self._closing_on_error(handler), self._checked(process_request)
 
     def _is_acceptable(self, message: Mapping[str, Any]) -> bool:
         """Messages for controls that no longer exist are passed on: controls come and go."""
@@ -155,34 +146,22 @@ class ConnectionGuard:
         return handled
 
 
-class _Connection(library.ServerConnection):
-    """Passes valid messages on and closes at the first invalid one."""
+class _MessageCheck:
+    """Check of the messages of one connection: their rate, their form, and the values of controls."""
 
-    def __init__(
-        self, *arguments: Any, most: int, is_acceptable: Callable[[Mapping[str, Any]], bool], **options: Any
-    ):
-        super().__init__(*arguments, **options)
-        self._most, self._is_acceptable = most, is_acceptable
+    def __init__(self, is_acceptable: Callable[[Mapping[str, Any]], bool]):
+        self._is_acceptable = is_acceptable
         self._rate_limiter = RateLimiter()
 
-    def connection_made(self, transport: Any) -> None:
-        super().connection_made(transport)
-        if len(self.server.handlers) > self._most:
-            transport.abort()
-
-    async def recv(self, *arguments: Any, **options: Any):
-        while True:
-            message = await super().recv(*arguments, **options)
-            if not self._rate_limiter.allow(time.monotonic()):
-                await self.close(1008, "too many messages")
-                continue  # recv then raises ConnectionClosed
-            try:
-                content = _read(message)
-            except (RefusedError, msgspec.MsgspecError, TypeError) as error:
-                await self.close(1003, str(error).encode()[:MOST_REASON].decode(errors="ignore"))
-                continue
-            if self._is_acceptable(content):
-                return message
+    def __call__(self, message: Any) -> bool:
+        """Return whether a message is passed on. Raises ClosingError."""
+        if not self._rate_limiter.allow(time.monotonic()):
+            raise ClosingError(1008, "too many messages")
+        try:
+            content = _read(message)
+        except (RefusedError, msgspec.MsgspecError, TypeError) as error:
+            raise ClosingError(1003, str(error).encode()[:MOST_REASON].decode(errors="ignore")) from None
+        return self._is_acceptable(content)
 
 
 def _read(message: Any) -> Mapping[str, Any]:

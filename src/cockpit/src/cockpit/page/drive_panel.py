@@ -1,25 +1,18 @@
 """The Drive tab: goals, poses and points, driving by hand, simulated time, missions, doors."""
 
-from typing import Any, Callable, Mapping, Protocol, Sequence, Tuple
+from typing import Any, Callable, Dict, Mapping, Protocol, Sequence, Tuple
 
 from cockpit.models.tables import paragraph
+from cockpit.page.toolbar import DROP_BOX, MOVE_MODEL
 
-LOOK, GOAL, POSE, POINT, BOX, MOVE = "Look", "Goal", "Pose", "Point", "Box", "Move"
-MODES = (LOOK, GOAL, POSE, POINT, BOX, MOVE)
-HINTS = {
-    LOOK: "The mouse turns the camera.",
-    GOAL: "Press on the floor, turn, release: the robot drives there.",
-    POSE: "Press where the robot is, turn it the way it looks, release.",
-    POINT: "Click a place: it is published.",
-    BOX: "Click a place: a box is dropped there.",
-    MOVE: "Press the new position of the model; drag to turn it; release.",
-}
 # The buttons and keys of turtlebot_teleop; the page has no "," key and uses m instead.
 BUTTONS = (("U", "u"), ("I", "i"), ("O", "o"), ("J", "j"), ("K", "k"), ("L", "l"), ("M", ","))
 ARROWS = {"U": "forward left", "I": "forward", "O": "forward right", "J": "turn left", "K": "stop"}
 ARROWS.update({"L": "turn right", "M": "back"})
 HOLD_HZ = 10.0
 NO_SUBSCRIBER, NO_MODEL, NO_PLACE = "(no subscriber yet)", "(no model yet)", "(no place yet)"
+# Name of the robot without a namespace.
+NO_NAMESPACE = "(no namespace)"
 SPEEDS = ("as fast as possible", "0.5 x", "1 x", "2 x", "5 x")
 FACTORS = (0.0, 0.5, 1.0, 2.0, 5.0)
 
@@ -27,7 +20,7 @@ FACTORS = (0.0, 0.5, 1.0, 2.0, 5.0)
 class DriveCommands(Protocol):
     """The actions of the panel; their exceptions are reported on the page."""
 
-    def set_mode(self, mode: str) -> None: ...
+    def choose_mode(self, mode: str) -> None: ...
 
     def press(self, key: str, client: int) -> None: ...
 
@@ -60,12 +53,13 @@ class DrivePanel:
 
     def __init__(self, gui, tab, driver: DriveCommands, guarded: Callable[[Callable], Callable]):
         self._gui, self._driver, self._guarded = gui, driver, guarded
+        self._namespaces: Dict[str, str] = {NO_NAMESPACE: "/"}
         with tab:
-            self._build_pointing()
+            self._build_robot()
+            self._build_mission()
             self._build_teleop()
             self._build_time()
-            self._build_mission()
-            self._build_joints()
+            self._build_world()
         self._build_keys()
 
     def offer_world(self, models: Sequence[str], joints: Sequence[str]) -> None:
@@ -87,29 +81,30 @@ class DrivePanel:
             topics: Velocity topics with a subscriber.
             places: Places of deliveries.
         """
-        _offer(self.robot, robots)
+        if robots:
+            self._namespaces = {robot.strip("/") or NO_NAMESPACE: robot for robot in robots}
+        _offer(self.robot, tuple(self._namespaces))
+        self.robot.visible = len(self._namespaces) > 1
         _offer(self.topic, topics)
+        is_first = NO_PLACE in self.destination.options
         for end in (self.source, self.destination):
             _offer(end, places)
+        if is_first and len(places) > 1:
+            self.destination.value = places[1]
 
-    def reset_mode(self) -> None:
-        """Return the mouse to the camera."""
-        self.mode.value = LOOK
+    @property
+    def namespace(self) -> str:
+        """Namespace of the selected robot, with slashes around it."""
+        return self._namespaces.get(self.robot.value, "/")
 
-    def _build_pointing(self) -> None:
-        gui = self._gui
-        self.mode = gui.add_dropdown("Mouse", MODES)
-        self.hint = gui.add_html(paragraph(HINTS[LOOK]))
-        self.robot = gui.add_dropdown("Robot", ("/",))
-        self.model = gui.add_dropdown("Model", (NO_MODEL,), visible=False)
-        self.cancel = gui.add_button("Cancel the goal", color="gray")
-        self.mode.on_update(self._guarded(self._choose_mode))
-        self.cancel.on_click(self._guarded(lambda _: self._driver.cancel()))
+    def show_refusal(self, reason: str) -> None:
+        """Show why a mission was refused, until the next one."""
+        self.mission.content = paragraph(f"The mission was refused: {reason}")
 
-    def _choose_mode(self, _event: Any) -> None:
-        self.model.visible = self.mode.value == MOVE
-        self._driver.set_mode(self.mode.value)
-        self.hint.content = paragraph(HINTS[self.mode.value])  # the hint confirms the switch
+    def _build_robot(self) -> None:
+        self.robot = self._gui.add_dropdown("Robot", (NO_NAMESPACE,), visible=False)
+        cancel = self._gui.add_button("Cancel the goal", color="gray")
+        cancel.on_click(self._guarded(lambda _: self._driver.cancel()))
 
     def _build_teleop(self) -> None:
         gui = self._gui
@@ -132,7 +127,14 @@ class DrivePanel:
             start.on_click(guarded(lambda _: driver.deliver()))
             end.on_click(guarded(lambda _: driver.cancel_mission()))
 
-    def _build_joints(self) -> None:
+    def _build_world(self) -> None:
+        gui, driver, guarded = self._gui, self._driver, self._guarded
+        with gui.add_folder("Models"):
+            drop = gui.add_button(DROP_BOX, color="gray")
+            self.model = gui.add_dropdown("Model", (NO_MODEL,))
+            move = gui.add_button(MOVE_MODEL, color="gray")
+        drop.on_click(guarded(lambda _: driver.choose_mode(DROP_BOX)))
+        move.on_click(guarded(lambda _: driver.choose_mode(MOVE_MODEL)))
         self._joints = self._gui.add_folder("Doors and drawers", visible=False)
         with self._joints:
             self.joint = self._gui.add_dropdown("Of", (NO_MODEL,))

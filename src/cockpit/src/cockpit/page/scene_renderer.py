@@ -139,10 +139,16 @@ def _digest(shape) -> bytes:
 
 def _points(scene, path: str, shape: PointCloudShape, old):
     if old is not None:
-        old.points, old.colors = shape.points.astype(np.float16), np.asarray(shape.colours, np.uint8)
+        old.points, old.colors = shape.points.astype(np.float32), np.asarray(shape.colours, np.uint8)
         return old
     return scene.add_point_cloud(
-        path, shape.points, shape.colours, point_size=shape.size, point_shape="circle", point_shading="flat"
+        path,
+        shape.points,
+        shape.colours,
+        point_size=shape.size,
+        point_shape="circle",
+        point_shading="flat",
+        precision="float32",
     )
 
 

@@ -12,6 +12,7 @@ from cockpit.access import AccessPolicy
 from cockpit.frames import wxyz_of
 from cockpit.page.connection_guard import ConnectionGuard, listen
 from cockpit.page.scene_renderer import LAID_DOWN
+from cockpit.page.window_column import WindowColumn
 
 NAME = "Cockpit"
 BRAND = (38, 110, 160)
@@ -30,6 +31,7 @@ class Page:
     Attributes:
         gui: The gui of viser, shared by all clients.
         scene: The scene of viser, shared by all clients.
+        windows: The column of the main panel and the windows.
         url: Address of the page with the token.
 
     Raises:
@@ -49,6 +51,7 @@ class Page:
         with guard.guarding(), contextlib.redirect_stdout(io.StringIO()):
             self._server = viser.ViserServer(address, port, label=NAME, verbose=False)
         self.gui, self.scene = self._server.gui, self._server.scene
+        self.windows = WindowColumn(self.gui)
         guard.set_controls(self.gui)
         self._server.on_client_connect(self._on_connect)
         self._server.on_client_disconnect(self._on_disconnect)
@@ -126,8 +129,6 @@ class Page:
         self.gui.configure_theme(
             show_logo=False, show_share_button=False, brand_color=BRAND, control_width="medium"
         )
-        self.gui.main_panel.dock_right()
-        self.gui.main_panel.set_width(360)
         self._server.initial_camera.position = CAMERA
         self._server.initial_camera.look_at = LOOK_AT
         self._server.initial_camera.fov = FIELD_OF_VIEW

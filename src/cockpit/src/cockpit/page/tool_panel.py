@@ -1,8 +1,6 @@
-"""The Tools tab with a checkbox for each tool, and the windows of open tools."""
+"""The Tools tab."""
 
 from typing import Any, Callable, Dict, Iterable, Tuple
-
-WIDTH = 420
 
 
 class ToolPanel:
@@ -15,7 +13,6 @@ class ToolPanel:
     """
 
     def __init__(self, gui, tools: Iterable[Tuple[str, str]], on_switch: Callable[[str, bool], None]):
-        self._gui = gui
         self._boxes: Dict[str, Any] = {}
         gui.add_markdown("Each tool opens a window that can be moved and docked.")
         for name, title in tools:
@@ -26,37 +23,3 @@ class ToolPanel:
     def open(self, name: str) -> None:
         """Tick the checkbox of a tool."""
         self._boxes[name].value = True
-
-    def window(self, title: str, width: int) -> Any:
-        """Create a window; controls are created within its context.
-
-        Args:
-            title: Title of the window.
-            width: Width of the window [pixels].
-        """
-        return ToolWindow(self._gui, title, width)
-
-
-class ToolWindow:
-    """A movable window of the page.
-
-    Args:
-        gui: The gui of viser.
-        title: Title of the window.
-        width: Width of the window [pixels].
-    """
-
-    def __init__(self, gui, title: str, width: int = WIDTH):
-        self._panel = gui.add_panel()
-        self._tab = self._panel.add_tab(title)
-        self._panel.dock_left()
-        self._panel.set_width(width)
-
-    def __enter__(self):
-        return self._tab.__enter__()
-
-    def __exit__(self, *error):
-        return self._tab.__exit__(*error)
-
-    def remove(self) -> None:
-        self._panel.remove()

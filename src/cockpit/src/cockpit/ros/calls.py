@@ -4,7 +4,6 @@ import time
 from typing import Any
 
 import rospy
-from rospy.msg import args_kwds_to_message
 
 from cockpit.errors import CockpitError
 from planar_ros.calls.services import ServiceError, call_service
@@ -20,7 +19,7 @@ def call(name: str, kind: Any, *arguments: Any, seconds: float = ANSWER_SECONDS)
     Args:
         name: Name of the service.
         kind: Type of the service.
-        arguments: Fields of the request.
+        arguments: Fields of the request, or the request.
         seconds: Longest time to wait for the response [wall s].
 
     Raises:
@@ -28,7 +27,8 @@ def call(name: str, kind: Any, *arguments: Any, seconds: float = ANSWER_SECONDS)
     """
     try:
         rospy.wait_for_service(name, SERVICE_SECONDS)
-        request = args_kwds_to_message(kind._request_class, arguments, {})
+        is_request = len(arguments) == 1 and isinstance(arguments[0], kind._request_class)
+        request = arguments[0] if is_request else kind._request_class(*arguments)
         return call_service(name, kind, request, seconds)
     except (rospy.ROSException, ServiceError) as error:
         raise CockpitError(str(error)) from None

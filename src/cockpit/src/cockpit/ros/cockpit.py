@@ -16,10 +16,13 @@ from cockpit.page.camera_images import CameraWindow
 from cockpit.page.pointer import FloorPointer
 from cockpit.page.scene_renderer import SceneRenderer
 from cockpit.page.server import Page
+from cockpit.page.style import sheet_html
+from cockpit.page.toolbar import Toolbar
 from cockpit.page.view_panel import AUTOMATIC, ViewPanel
 from cockpit.ros.drive_tab import DriveTab
 from cockpit.ros.graph import GraphClient
 from cockpit.ros.layer_subscriptions import LayerManager
+from cockpit.ros.log_collector import LogCollector
 from cockpit.ros.tool import error_text
 from cockpit.ros.toolbox import Toolbox
 from cockpit.ros.transforms import TransformFeed
@@ -47,6 +50,7 @@ class CockpitController:
     def __init__(self, page: Page, reader: SceneReader):
         self._page = page
         self._graph = GraphClient()
+        self._log = LogCollector(self._graph)
         self._fixed: str = FIXED_FRAMES[0]
         self._frames = FrameTree()
         self._transforms = TransformFeed(self._frames)
@@ -66,19 +70,21 @@ class CockpitController:
 
     def _build(self) -> None:
         gui = self._page.gui
+        gui.add_html(sheet_html())
+        toolbar = Toolbar(gui, self._drive_tab.set_mode, self._guarded)
         tabs = gui.add_tab_group()
         self._view = ViewPanel(gui, tabs.add_tab("View"), self._guarded(self._world.view.cut))
-        self._drive_tab.build(gui, tabs.add_tab("Drive"), self._guarded)
+        self._drive_tab.build(gui, tabs.add_tab("Drive"), toolbar, self._guarded)
         with tabs.add_tab("Tools"):
-            self.toolbox = Toolbox(self._page, self._graph)
-        self._screens = CameraWindow(gui)
+            self.toolbox = Toolbox(self._page, self._graph, self._log.entries)
+        self._screens = CameraWindow(gui, self._page.windows)
 
     def run(self, is_over: Callable[[], bool] = rospy.is_shutdown) -> None:
         """Run until ``is_over`` returns True."""
         while not is_over():
             if not self._page.wait_for_client(IDLE_SECONDS):
                 self._unsubscribe()
-                self._read_world()
+                self._prepare()
                 continue
             began = time.monotonic()
             try:
@@ -89,13 +95,14 @@ class CockpitController:
         self._drive_tab.teleop.close()
         self._unsubscribe()
 
-    def _read_world(self) -> None:
-        """Read the world early, for the first client."""
+    def _prepare(self) -> None:
+        """Read the world early, for the first client, and store what is logged."""
         with suppress(CockpitError):
+            self._log.update()
             self._world.poll()
 
     def _unsubscribe(self) -> None:
-        """End all subscriptions while no page is open."""
+        """End all subscriptions but the log's while no page is open."""
         self._layers.close()
         self._transforms.subscribe(False)
         self._drive_tab.unsubscribe()
@@ -111,6 +118,7 @@ class CockpitController:
                 self._refresh()
             self._drive_tab.update()
             self._transforms.update()
+            self._log.update()
             self._error = ""
         except Exception as error:  # everything else is still drawn
             self._error = error_text(error)

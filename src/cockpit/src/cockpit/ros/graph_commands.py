@@ -7,9 +7,9 @@ import gazebo_msgs.msg
 import gazebo_msgs.srv
 import numpy as np
 import rospy
-from actionlib_msgs.msg import GoalID
+from actionlib_msgs.msg import GoalID, GoalStatus
 from geometry_msgs.msg import PointStamped, Pose, PoseStamped, PoseWithCovarianceStamped
-from home_service_msgs.msg import DeliverActionGoal, DeliverGoal, Delivery
+from home_service_msgs.msg import DeliverActionGoal, DeliverActionResult, DeliverGoal, Delivery
 from home_service_msgs.srv import AddDelivery, CancelDelivery
 from sim_bridge_msgs.srv import Step
 from std_srvs.srv import Empty
@@ -50,6 +50,7 @@ class GraphCommands:
         self._graph = graph
         self._publishers: Dict[str, rospy.Publisher] = {}
         self._boxes = 0
+        self._mission_id = ""
 
     def robots(self) -> List[str]:
         """Return the namespaces with a goal topic."""
@@ -139,7 +140,15 @@ class GraphCommands:
             raise CockpitError(
                 "no node accepts missions on /deliver/goal; start one with home_service.sh --serve"
             )
-        self._send(goal, DeliverActionGoal(goal=DeliverGoal(deliveries=[delivery])))
+        message = DeliverActionGoal(goal=DeliverGoal(deliveries=[delivery]))
+        self._mission_id = message.goal_id.id = f"{rospy.get_name()}-{time.time():.6f}"
+        self._send(goal, message)
+
+    def refusal(self, result: DeliverActionResult) -> str:
+        """Return why the mission that was requested here was refused; empty for any other result."""
+        is_own = result.status.goal_id.id == self._mission_id
+        is_refused = result.status.status == GoalStatus.ABORTED and not result.result.deliveries
+        return result.result.reason if is_own and is_refused else ""
 
     def cancel_mission(self) -> None:
         """Cancel all deliveries; a carried object is set down where the robot stands."""

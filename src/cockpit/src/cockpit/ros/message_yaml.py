@@ -9,6 +9,8 @@ import rospy
 import yaml
 
 from cockpit.errors import CockpitError
+from planar.config.bounded_yaml import load_yaml
+from rospy_transport.node import is_initialized
 
 LONGEST = 20_000
 
@@ -50,11 +52,11 @@ def filled(kind: Type[Any], text: str) -> Any:
         raise CockpitError(f"longer than {LONGEST} characters")
     message = kind()
     try:
-        fields = yaml.safe_load(text)
+        fields = load_yaml(text)
         if fields is not None and not isinstance(fields, (dict, list)):
             raise CockpitError("expected fields with values, such as 'data: 1.0'")
         if fields:
-            now = rospy.get_rostime() if rospy.core.is_initialized() else rospy.Time()
+            now = rospy.get_rostime() if is_initialized() else rospy.Time()
             arguments = fields if isinstance(fields, list) else [fields]
             genpy.message.fill_message_args(message, arguments, {"now": now, "auto": _header(now)})
         message._check_types()

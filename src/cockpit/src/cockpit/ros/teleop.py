@@ -7,7 +7,7 @@ from typing import Optional
 import rospy
 from geometry_msgs.msg import Twist
 
-from planar_ros.node.flush import flush_and_close
+from planar_ros.node.topics import flush_and_close
 from teleop_lite.teleop import TICK_SECONDS, Teleop
 
 # Zero velocities are published for this long after the robot has stopped [s].

@@ -3,31 +3,39 @@
 import threading
 from typing import Any, Callable, Protocol, Tuple
 
+from cockpit.models.log import LogBuffer
 from cockpit.ros.graph import GraphClient
 from planar import PlanarError
 from planar.deprecation import renamed_method
 
 
 class ToolContext:
-    """The page, the ROS graph, a lock and the arguments of a tool.
+    """The page, the ROS graph, the log, a lock and the arguments of a tool.
 
     Args:
         gui: The gui of viser.
         graph: Client of the ROS graph.
         notify: Shows a notification on the page; called with the text and whether it reports an error.
+        log: The log messages since the cockpit was started.
         words: Arguments of the command line.
 
     Attributes:
         gui: The gui of viser; controls made during ``Tool.build`` appear in the tool's window.
         graph: Client of the ROS graph.
+        log: The log messages of all nodes since the cockpit was started.
         lock: Held while any method of the tool runs.
         words: Arguments of the command line, as in ``rqt_plot /odom/twist/twist/linear/x``; may be ignored.
     """
 
     def __init__(
-        self, gui: Any, graph: GraphClient, notify: Callable[[str, bool], None], words: Tuple[str, ...] = ()
+        self,
+        gui: Any,
+        graph: GraphClient,
+        notify: Callable[[str, bool], None],
+        log: LogBuffer,
+        words: Tuple[str, ...] = (),
     ):
-        self.gui, self.graph, self.words = gui, graph, words
+        self.gui, self.graph, self.log, self.words = gui, graph, log, words
         self.lock = threading.RLock()
         self._notify = notify
 
@@ -77,13 +85,11 @@ class Tool(Protocol):
         name: Identifier for ``cockpit.sh --tool`` and the page, one word.
         title: Title of the window.
         seconds: Time between two updates [s].
-        width: Width of the window [pixels].
     """
 
     name: str
     title: str
     seconds: float
-    width: int
 
     def __init__(self, context: ToolContext): ...
 

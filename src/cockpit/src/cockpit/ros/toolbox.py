@@ -4,6 +4,7 @@ import threading
 from dataclasses import dataclass
 from typing import Any, Dict, List, Tuple
 
+from cockpit.models.log import LogBuffer
 from cockpit.page.server import Page
 from cockpit.page.tool_panel import ToolPanel
 from cockpit.ros.graph import GraphClient
@@ -26,10 +27,11 @@ class Toolbox:
     Args:
         page: The page.
         graph: Client of the ROS graph.
+        log: The log messages since the cockpit was started.
     """
 
-    def __init__(self, page: Page, graph: GraphClient):
-        self._page, self._graph = page, graph
+    def __init__(self, page: Page, graph: GraphClient, log: LogBuffer):
+        self._page, self._graph, self._log = page, graph, log
         self._kinds = all_tools()
         self._open: Dict[str, _OpenTool] = {}
         self._words: Dict[str, Tuple[str, ...]] = {}
@@ -86,12 +88,13 @@ class Toolbox:
                 opened = self._open.pop(name)
                 with opened.context.lock:
                     opened.tool.close()
-                opened.window.remove()
+                self._page.windows.remove(opened.window)
 
     def _make(self, name: str) -> _OpenTool:
         kind = self._kinds[name]
-        context = ToolContext(self._page.gui, self._graph, self._page.notify, self._words.pop(name, ()))
-        window = self._panel.window(kind.title, kind.width)
+        words = self._words.pop(name, ())
+        context = ToolContext(self._page.gui, self._graph, self._page.notify, self._log, words)
+        window = self._page.windows.open(kind.title)
         opened = _OpenTool(kind(context), context, window)
         with context.lock, window:
             opened.tool.build()

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Dict, List, Optional, Sequence
 
 from cockpit.process import FREE_PORT, CockpitProcess
+from evaluation.verdict import Verdict
 from planar import PlanarError
 from run_project.checkout.dry_run import recorded_calls
 from run_project.checkout.layout import (
@@ -23,7 +24,7 @@ from run_project.checkout.placement import READ_SUFFIXES, Placement, best_placem
 from run_project.course.launch_plan import CourseProject, ProjectLaunchPlan, find_launch_plan
 from run_project.judging.log_errors import find_log_errors
 from run_project.judging.run_record import ProjectRunRecord
-from run_project.judging.verdict import ProjectVerdict, judge
+from run_project.judging.verdict import judge
 from run_project.options import ProjectOptions, parse
 from run_project.preparation.building import BuildError, Workspace, build, copy_checkout, environment
 from run_project.preparation.private_root import private_mount_command
@@ -283,7 +284,7 @@ def run_command(
 
 def _verdict_of(
     run: ProjectRun, failure: Optional[str], requires_goals: bool, options: ProjectOptions
-) -> ProjectVerdict:
+) -> Verdict:
     if run.user is None:
         return judge(run.observer.record, failure, requires_goals, options.expect)
     return run.user.results.verdict(failure)
@@ -324,7 +325,7 @@ def _parameters(options: ProjectOptions, plan: Optional[ProjectLaunchPlan]) -> D
     }
 
 
-def _report(display: Display, verdict: ProjectVerdict, record: ProjectRunRecord, errors: List[str]) -> None:
+def _report(display: Display, verdict: Verdict, record: ProjectRunRecord, errors: List[str]) -> None:
     if not verdict.success:
         for error in errors:
             display.print(f"  | {error}")

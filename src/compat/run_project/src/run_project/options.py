@@ -1,28 +1,14 @@
 """Command line options of run_project."""
 
 import argparse
-import math
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Optional, Sequence, Tuple
 
 from run_project.judging.run_record import FINAL_STATUSES
 from supervision import command_line
-from supervision.command_line import argument, option
-
-
-def _speed(text: str) -> float:
-    value = float(text)
-    if not (math.isfinite(value) and value >= 0.0):
-        raise argparse.ArgumentTypeError(f"must be 0 or more, got {text}")
-    return value
-
-
-def _seconds(text: str) -> float:
-    value = float(text)
-    if not (math.isfinite(value) and value > 0.0):
-        raise argparse.ArgumentTypeError(f"must be positive, got {text}")
-    return value
+from supervision.command_line import argument, option, seconds
+from supervision.view_options import ViewOptions
 
 
 def _goal_statuses(text: str) -> Tuple[str, ...]:
@@ -42,7 +28,7 @@ def _window_input(text: str) -> str:
 
 
 @dataclass(frozen=True)
-class ProjectOptions:
+class ProjectOptions(ViewOptions):
     """Run an existing home-service project, unmodified and headless.
 
     The project is one for the TurtleBot 2, Kinetic and Gazebo 7. Works on a copy, with stand-ins for xterm,
@@ -58,7 +44,10 @@ class ProjectOptions:
     """
 
     path: Path = argument(
-        "the checkout: a workspace, the content of src, or one package", metavar="PATH", type=Path
+        "the checkout: a workspace, the content of src, or one package",
+        default=Path(),
+        metavar="PATH",
+        type=Path,
     )
     script: Optional[str] = argument(
         "shell script to run (default: home_service.sh), or go_chase_it, where_am_i, map_my_world",
@@ -66,13 +55,8 @@ class ProjectOptions:
         metavar="SCRIPT",
         nargs="?",
     )
-    speed: Optional[float] = option(
-        None,
-        "1 real time, N times that, 0 as fast as the nodes keep up (default: 0, with --rviz or --web 1)",
-        type=_speed,
-    )
     seed: int = option(0, "seed of all noise", type=int)
-    timeout: float = option(600.0, "the run fails after N seconds of wall time", type=_seconds)
+    timeout: float = option(600.0, "the run fails after N seconds of wall time", type=seconds)
     expect: Optional[Tuple[str, ...]] = option(
         None,
         "expected ends of its goals, such as aborted,succeeded",
@@ -87,33 +71,9 @@ class ProjectOptions:
         metavar="WINDOW=TEXT",
     )
     rviz: bool = option(False, "show it in rviz with the project's configuration")
-    web: bool = option(
-        False,
-        "show it in the browser: prints the URL of the page (docs/how_to/watch_in_the_browser.md)",
-    )
-    web_port: Optional[str] = option(
-        None,
-        "address of that page (default: a free port of 127.0.0.1); implies --web",
-        metavar="[ADDRESS:]PORT",
-    )
     record: bool = option(False, "record a bag into the run folder")
     build_only: bool = option(False, "stop after the build")
-    output: Path = option(
-        Path("runs"), "folder in which the run folder is created", type=Path, metavar="FOLDER"
-    )
     script_arguments: Tuple[str, ...] = ()
-
-    @property
-    def effective_speed(self) -> float:
-        """Simulated seconds per second of wall time; 0: as fast as the nodes keep up.
-
-        Defaults to real time with ``--rviz`` or ``--web``.
-        """
-        return float(self.rviz or self.shows_cockpit) if self.speed is None else self.speed
-
-    @property
-    def shows_cockpit(self) -> bool:
-        return self.web or self.web_port is not None
 
 
 def parse(words: Sequence[str]) -> ProjectOptions:

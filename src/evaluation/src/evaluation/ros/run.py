@@ -5,18 +5,19 @@ import threading
 import time
 from contextlib import suppress
 from dataclasses import asdict
-from typing import Any, Callable, Optional
+from typing import Any, Callable, Optional, Sequence
 
 import rospy
 
 from cockpit.process import FREE_PORT, CockpitProcess
-from evaluation.contracts import Judge, Recorder
+from evaluation.consumers.clock_monitor import ClockMonitor
+from evaluation.consumers.trace_recorder import TraceRecorder
+from evaluation.contracts import Consumer, Judge, Recorder
 from evaluation.options import LaunchPlan, RunOptions
 from evaluation.result import ResultFile, grouped_by_reason
-from evaluation.ros.clock_monitor import ClockMonitor
 from evaluation.ros.rosbag_process import RosbagProcess
-from evaluation.ros.subscriptions import subscribing_together
-from evaluation.ros.trace_recorder import TraceRecorder
+from evaluation.ros.run_topics import observe
+from evaluation.ros.standstill import why_clock_stopped
 from evaluation.verdict import Verdict
 from planar import PlanarError, SettingsError
 from planar_ros.lockstep.client import OBSERVERS_PARAMETER
@@ -48,9 +49,10 @@ class Run:
     Args:
         options: Options of the command.
         launch: What to launch.
-        judge: Started as soon as there is a graph.
-        recorder: Started as soon as there is a graph.
+        judge: Observes the run as soon as there is a graph.
+        recorder: Observes the run, too.
         display: Terminal output.
+        consumers: Further observers.
 
     Attributes:
         folder: Run folder.
@@ -61,7 +63,13 @@ class Run:
     """
 
     def __init__(
-        self, options: RunOptions, launch: LaunchPlan, judge: Judge, recorder: Recorder, display: Display
+        self,
+        options: RunOptions,
+        launch: LaunchPlan,
+        judge: Judge,
+        recorder: Recorder,
+        display: Display,
+        consumers: Sequence[Consumer] = (),
     ):
         if options.rviz and not os.environ.get("DISPLAY"):
             raise SettingsError(NO_DISPLAY)
@@ -75,7 +83,8 @@ class Run:
         self._bags: Optional[RosbagProcess] = None
         self._cockpit: Optional[CockpitProcess] = None
         self._trace = TraceRecorder()
-        self._clock_monitor = ClockMonitor(display.print)
+        self._clock_monitor = ClockMonitor(display.print, why_clock_stopped)
+        self._consumers = consumers
         self._has_succeeded = False
 
     def __enter__(self) -> "Run":
@@ -172,14 +181,10 @@ class Run:
             wait_for("the recorder of bags", self._bags.is_ready)
 
     def _subscribe(self) -> None:
-        """Make this process a node and start all observers."""
+        """Make this process a node and observe the run."""
         init_node(NODE, log_level=rospy.ERROR)
-        with subscribing_together():
-            self._trace.start()
-            if self._launch.is_simulated:
-                self._clock_monitor.start()
-            self._judge.start()
-            self._recorder.start()
+        clock = (self._clock_monitor,) if self._launch.is_simulated else ()
+        observe(self._trace, *clock, self._judge, self._recorder, *self._consumers)
         rospy.set_param(OBSERVERS_PARAMETER, [rospy.get_name()])
 
     def _finish(self, error: Optional[BaseException]) -> None:

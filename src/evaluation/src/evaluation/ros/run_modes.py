@@ -4,10 +4,10 @@ import math
 import os
 from typing import Mapping, Set
 
+from evaluation.consumers.referee import Referee
+from evaluation.consumers.run_recorder import RunRecorder
 from evaluation.options import LaunchPlan, RunOptions
-from evaluation.ros.referee import Referee
 from evaluation.ros.run import Run
-from evaluation.ros.run_recorder import RunRecorder
 from evaluation.verdict import Verdict
 from planar.maps.places import NamedPlace
 from supervision.display import Display

@@ -11,8 +11,8 @@ class MapHome(MappingOptions):
     """
 
     def run(self) -> int:
-        from headless_mission.inputs import read_world
+        from headless_mission.inputs import read_mapped_world
         from home_service.ros.mapping import make_scored_map
 
-        stage = read_world(self)
+        stage = read_mapped_world(self)
         return make_scored_map(self, self.mapping(explores=True), stage)

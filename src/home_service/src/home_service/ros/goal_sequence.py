@@ -1,14 +1,15 @@
 """Drive to goals of move_base one after the other, judged by ground truth."""
 
-from typing import List, Optional, Sequence
+from typing import Optional, Sequence
 
 import rospy
-from move_base_msgs.msg import MoveBaseActionResult
 
+from evaluation.consumers.referee import Referee
+from evaluation.consumers.run_recorder import RunRecorder
+from evaluation.event_stream import Latest
+from evaluation.events import GoalEnded
 from evaluation.options import LaunchPlan, RunOptions
-from evaluation.ros.referee import Referee
 from evaluation.ros.run import Run
-from evaluation.ros.run_recorder import RunRecorder
 from evaluation.verdict import ARRIVAL_TOLERANCE, Verdict
 from planar import Pose2
 from planar.driving import DriveOutcome, DriveResult
@@ -20,28 +21,34 @@ def drive_to_goals(options: RunOptions, launch: LaunchPlan, goals: Sequence[Pose
     """Run a navigation graph and drive to goals in the map frame; return the exit code."""
     display = Display()
     referee = Referee({}, display.print)
-    with Run(options, launch, referee, RunRecorder({}), display) as run:
-        failure = _drive_to_all(run, referee, goals) or referee.collision
+    end = Latest(GoalEnded)
+    with Run(options, launch, referee, RunRecorder({}), display, [end]) as run:
+        failure = _drive_to_all(run, referee, end, goals) or referee.collision
         reached = f"{len(goals)} of {len(goals)} goals reached, no collision"
         return run.conclude(Verdict(failure is None, failure or reached))
 
 
-def _drive_to_all(run: Run, referee: Referee, goals: Sequence[Pose2]) -> Optional[str]:
+def _drive_to_all(
+    run: Run, referee: Referee, end: "Latest[GoalEnded]", goals: Sequence[Pose2]
+) -> Optional[str]:
     """Return why the last goal was not reached, or None."""
-    # Received before the client receives it: the last entry is the time at which the latest goal ended.
-    ends: List[float] = [0.0]
-    rospy.Subscriber(
-        "move_base/result", MoveBaseActionResult, lambda result: ends.append(result.header.stamp.to_sec())
-    )
+    # Created after the run has subscribed, so that ``end`` is known before the client knows the outcome.
     move_base = MoveBaseClient()
     failure = run.watch(move_base.is_ready)
     for number, pose in enumerate(goals, 1):
         if failure is None:
             name = f"goal {number} ({pose.x:g}, {pose.y:g}, {pose.yaw:g})"
             failure = _drive_to(run, referee, move_base, pose, name)
-            failure = failure or run.watch(lambda: referee.simulated_time >= ends[-1])
+            failure = failure or run.watch(
+                lambda: end.event is None or referee.simulated_time >= end.event.stamp
+            )
             failure = failure or _judged(run, referee, pose, name)
     return failure
+
+
+def _has_truth_of(end: GoalEnded, referee: Referee) -> bool:
+    """Whether the true pose at the end of a goal is known."""
+    return referee.simulated_time >= end.stamp
 
 
 def _drive_to(run: Run, referee: Referee, move_base: MoveBaseClient, pose: Pose2, name: str) -> Optional[str]:

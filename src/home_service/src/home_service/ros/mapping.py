@@ -6,19 +6,17 @@ import time
 from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
-from typing import Callable, List, Optional
+from typing import Callable, Optional
 
-from actionlib_msgs.msg import GoalStatus
-from home_service_msgs.msg import ExploreActionFeedback, ExploreActionResult
-
+from evaluation.consumers.referee import Referee
+from evaluation.consumers.run_recorder import RunRecorder
+from evaluation.events import SUCCEEDED
 from evaluation.map_truth import judge_map, score_against_world
 from evaluation.options import LaunchPlan, MappingOptions
-from evaluation.ros.referee import Referee
 from evaluation.ros.run import Run
-from evaluation.ros.run_recorder import RunRecorder
-from evaluation.ros.subscriptions import subscribe
 from evaluation.verdict import Verdict
 from headless_mission.inputs import WorldInputs
+from home_service.exploration_monitor import ExplorationMonitor
 from planar import Pose2, SettingsError, load_map
 from supervision.display import Display
 from supervision.errors import LaunchError
@@ -29,7 +27,7 @@ from supervision.processes import ending_with_parent
 MAP_SECONDS, SAVE_SECONDS = 30.0, 90.0
 POLL_SECONDS = 0.05
 # Drives the robot until the map is complete; returns why that failed, or None.
-DriveFunction = Callable[[Run, Referee], Optional[str]]
+DriveFunction = Callable[[Run, ExplorationMonitor], Optional[str]]
 TELEOP = ["rosrun", "teleop_lite", "turtlebot_teleop_key", "turtlebot_teleop_keyboard/cmd_vel:=cmd_vel"]
 
 
@@ -38,8 +36,9 @@ def make_map(options: MappingOptions, launch: LaunchPlan, drive: DriveFunction) 
     _check_place_to_save(options.save)
     display = Display()
     referee = Referee({}, display.print)
-    with Run(options, launch, referee, RunRecorder({}), display) as run:
-        failure = drive(run, referee)
+    exploration = ExplorationMonitor(referee)
+    with Run(options, launch, referee, RunRecorder({}), display, [exploration]) as run:
+        failure = drive(run, exploration)
         path = save_map(run, options.save, failure)
         return run.conclude(Verdict(failure is None, failure or f"map saved in {path}"))
 
@@ -49,8 +48,9 @@ def make_scored_map(options: MappingOptions, launch: LaunchPlan, stage: WorldInp
     _check_place_to_save(options.save)
     display = Display()
     referee = Referee({}, display.print)
-    with Run(options, launch, referee, RunRecorder({}), display) as run:
-        failure = explore(run, referee)
+    exploration = ExplorationMonitor(referee)
+    with Run(options, launch, referee, RunRecorder({}), display, [exploration]) as run:
+        failure = explore(run, exploration)
         path = save_map(run, options.save, failure)
         distance_to_start = referee.distance_from(Pose2())
         score = score_against_world(load_map(path), stage.world, stage.robot)
@@ -59,25 +59,16 @@ def make_scored_map(options: MappingOptions, launch: LaunchPlan, stage: WorldInp
         return run.conclude(verdict, map=str(path), **asdict(score))
 
 
-def explore(run: Run, referee: Referee) -> Optional[str]:
+def explore(run: Run, exploration: ExplorationMonitor) -> Optional[str]:
     """Drive function: the explorer maps everything and returns to the start."""
-
-    def show(message: ExploreActionFeedback) -> None:
-        feedback = message.feedback
-        area, frontiers = feedback.explored_area, feedback.frontiers
-        referee.state = f"{feedback.state}, {area:.0f} m2 known, {frontiers} frontiers"
-
-    ends: List[GoalStatus] = []
-    subscribe("explore/feedback", ExploreActionFeedback, show)
-    subscribe("explore/result", ExploreActionResult, lambda message: ends.append(message.status))
-    failure = run.watch(lambda: len(ends) > 0)
-    if failure is not None:
+    failure = run.watch(lambda: exploration.end is not None)
+    if failure is not None or exploration.end is None:
         return failure
-    run.display.print(f"{ends[0].text}, {referee.simulated_seconds:.0f} s simulated")
-    return None if ends[0].status == GoalStatus.SUCCEEDED else ends[0].text
+    run.display.print(f"{exploration.end.text}, {exploration.simulated_seconds:.0f} s simulated")
+    return None if exploration.end.status == SUCCEEDED else exploration.end.text
 
 
-def drive_by_keyboard(run: Run, _referee: Referee) -> Optional[str]:
+def drive_by_keyboard(run: Run, _exploration: ExplorationMonitor) -> Optional[str]:
     """Drive function: the keyboard teleop owns the terminal or the pipe until it exits."""
     run.display.release_terminal()
     teleop = subprocess.Popen(TELEOP, preexec_fn=ending_with_parent())
@@ -89,7 +80,7 @@ def drive_by_keyboard(run: Run, _referee: Referee) -> Optional[str]:
     return failure
 
 
-def drive_in_browser(run: Run, _referee: Referee) -> Optional[str]:
+def drive_in_browser(run: Run, _exploration: ExplorationMonitor) -> Optional[str]:
     """Drive function: a person drives in the cockpit until Ctrl-C."""
     run.display.print(f"ROS_MASTER_URI={os.environ['ROS_MASTER_URI']}")
     run.display.print("drive in the cockpit; Ctrl-C ends the run and saves the map")

@@ -3,13 +3,12 @@
 from pathlib import Path
 from typing import Optional, Sequence
 
-import rospy
-from std_msgs.msg import String
-
+from evaluation.consumers.referee import Referee
+from evaluation.consumers.run_recorder import RunRecorder
+from evaluation.event_stream import Latest
+from evaluation.events import PlaybackUpdated
 from evaluation.options import LaunchPlan, RunOptions
-from evaluation.ros.referee import Referee
 from evaluation.ros.run import Run
-from evaluation.ros.run_recorder import RunRecorder
 from evaluation.verdict import Verdict
 from home_service.ros.bags import BROKEN, ENDED
 from home_service.ros.mapping import save_map
@@ -53,18 +52,21 @@ def replay(
         Exit code.
     """
     display = Display()
-    with Run(options, launch, Referee({}, display.print), RunRecorder({}), display) as run:
+    playback, referee = Latest(PlaybackUpdated), Referee({}, display.print)
+    with Run(options, launch, referee, RunRecorder({}), display, [playback]) as run:
         run.result.missing += recording.truncations
-        failure = _play(run)
+        failure = _play(run, playback)
         if failure is None and saves_map:
             display.print(f"map saved in {save_map(run, stem)}")
         verdict = Verdict(failure is None, failure or f"{recording.end - recording.start:.1f} s replayed")
         return run.conclude(verdict, bags=[str(path) for path in recording.paths])
 
 
-def _play(run: Run) -> Optional[str]:
+def _play(run: Run, playback: "Latest[PlaybackUpdated]") -> Optional[str]:
     """Wait for the end of the recording; return why it was not reached, or None."""
-    states = [""]
-    rospy.Subscriber("bag_player/state", String, lambda message: states.append(message.data), queue_size=10)
-    failure = run.watch(lambda: states[-1].startswith((ENDED, BROKEN)))
-    return failure or (states[-1] if states[-1].startswith(BROKEN) else None)
+
+    def state() -> str:
+        return "" if playback.event is None else playback.event.text
+
+    failure = run.watch(lambda: state().startswith((ENDED, BROKEN)))
+    return failure or (state() if state().startswith(BROKEN) else None)

@@ -21,6 +21,7 @@ LIBRARIES = ("numpy", "scipy", "numba", "pybullet")
 LEFT_OUT = (
     "ros",
     "planar_ros",
+    "rospy_transport",
     "test",
     "commands",
     "page",

@@ -3,15 +3,16 @@
 from pathlib import Path
 
 from laboratory.scenario import read_scenario
-from planar_ros.lockstep import transport
+from planar_ros.lockstep.transport import LockstepConnection
 from planar_ros.node.runner import run
+from rospy_transport.replacements import install
 from sim_bridge.config import BridgeSettings
 from sim_bridge.ros.node import Bridge
 from sim_bridge.world import World
 
 
 def main():
-    transport.install()
+    install(LockstepConnection)
     run("sim_bridge", lambda: Bridge(_world_of).run())
 
 

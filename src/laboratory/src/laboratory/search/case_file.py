@@ -12,12 +12,13 @@ from laboratory.scenario.scenario import Scenario
 from laboratory.search.cases import Case, NoiseProfile
 from laboratory.worlds.people import PedestrianRoute
 from planar import Pose2, write_atomically
+from planar.config.bounded_yaml import load_yaml
 from sim_bridge.faults import Fault
 
 
 def scenario_text(base: Scenario, case: Case, about: str, folder: Path) -> str:
     """Return the text of a scenario file in ``folder``: the base scenario with this case."""
-    content: Dict[str, Any] = yaml.safe_load(base.file.read_text(encoding="utf-8"))
+    content: Dict[str, Any] = load_yaml(base.file.read_text(encoding="utf-8"))
     content["about"] = about
     for part in ("world", "task"):
         content[part] = _relative_paths(folder, base.file.parent, content[part])

@@ -2,23 +2,23 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Mapping, Optional, Sequence, Set, Tuple
+from typing import Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 
-from evaluation.pedestrian_contacts import PedestrianContacts
 from evaluation.verdict import collision
 from headless_mission import NAVIGATION_CONFIG, EpisodeConditions
+from headless_mission.navigation import NavigationHooks
+from headless_mission.observers import ContactObserver
 from laboratory.tasks.task import COLLISION, FAILURE, SUCCESS, TIMEOUT, RunConditions, RunTrace
 from laboratory.worlds.barn import score
 from laboratory.worlds.source import Arena
-from move_base_lite import Navigator, Status
-from planar import Pose2, Scan, SettingsError, Twist2
+from move_base_lite import Status
+from planar import Pose2, SettingsError
 from planar.config.yaml_table import Table
 from planar.maps.places import parse_pose
-from sim_bridge import Simulation, StepResult, robot_named
-from sim_bridge.faults import FaultContext, FaultInjector
-from sim_bridge.simulation import ROBOT_NAME
+from sim_bridge import Episode, EpisodeHooks, Simulation, StepResult, robot_named
+from sim_bridge.faults import FaultInjector
 
 
 @dataclass(frozen=True)
@@ -34,12 +34,17 @@ class OdomGoalTask:
     radius: float = 1.0
 
     def run(self, scenario: RunConditions, arena: Arena, seed: int) -> RunTrace:
-        drive = _GoalDrive(scenario, arena, seed, self)
+        conditions = EpisodeConditions(scenario.planner, scenario.parameters)
+        settings = conditions.navigation(navigation_config(scenario.robot))
+        faults = FaultInjector(scenario.faults, seed)
+        robot, start = robot_named(scenario.robot), scenario.start
+        simulation = Simulation(arena.world, robot, scenario.simulation, seed, start, faults.wrappers)
+        drive = OdomGoalDrive(simulation, NavigationHooks(settings), self, start, faults)
         try:
             outcome, reason = drive.run(scenario.seconds)
         finally:
-            drive.close()
-        track, collisions = np.array(drive.trajectory), sorted(drive.collisions)
+            simulation.close()
+        track, collisions = np.array(drive.observer.trajectory), sorted(set(drive.observer.collisions))
         benchmark_score = None
         if arena.reference_length is not None:
             benchmark_score = (
@@ -53,8 +58,8 @@ class OdomGoalTask:
             collisions,
             arena.reference_length,
             benchmark_score,
-            drive.pedestrians.track,
-            drive.pedestrians.people_at_fault,
+            drive.observer.contacts.track,
+            drive.observer.contacts.people_at_fault,
         )
 
     def required_poses(self, arena: Arena) -> Sequence[Pose2]:
@@ -70,77 +75,62 @@ class OdomGoalTask:
         raise SettingsError("the task reach runs in one process only, not over ROS")
 
 
-class _GoalDrive:
-    """One run: it ends at the goal, at the first collision, or when navigation fails."""
+class OdomGoalDrive(EpisodeHooks):
+    """One run: it ends at the goal, at the first collision, or when navigation fails.
 
-    def __init__(self, scenario: RunConditions, arena: Arena, seed: int, task: OdomGoalTask):
-        settings = EpisodeConditions(scenario.planner, scenario.parameters).navigation(
-            navigation_config(scenario.robot)
-        )
-        self._navigator = Navigator(settings)
-        self._faults = FaultInjector(scenario.faults, seed)
-        self._simulation = Simulation(
-            arena.world,
-            robot_named(scenario.robot),
-            scenario.simulation,
-            seed,
-            scenario.start,
-            self._faults.wrappers,
-        )
-        self.pedestrians = PedestrianContacts(self._simulation)
-        self._steps = round(1.0 / settings.move_base.controller_frequency / self._simulation.step_seconds)
-        self._task, self._goal = task, scenario.start @ task.goal
-        self.trajectory: list = []
-        self.collisions: Set[str] = set()
+    Args:
+        simulation: Simulation of the robot.
+        navigation: move_base in the episode.
+        task: The goal.
+        start: Start pose in the world.
+        faults: Faults of the run.
+
+    Attributes:
+        observer: Collisions and true poses, from the first scan on.
+    """
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        navigation: NavigationHooks,
+        task: OdomGoalTask,
+        start: Pose2,
+        faults: Optional[FaultInjector] = None,
+    ):
+        self.observer, self._navigation = ContactObserver(simulation), navigation
+        hooks = self.observer, self, navigation
+        self._episode = Episode(simulation, navigation.period, faults=faults, hooks=hooks)
+        self._task, self._goal = task, start @ task.goal
+        self._start_stamp = 0.0
+        self._end: Optional[Tuple[str, str]] = None
 
     def run(self, seconds: float) -> Tuple[str, str]:
         """Drive to the goal; return outcome and reason. The time limit [s] starts with the goal."""
-        observation = self._first_scan()
-        scan = observation.scan
-        start_stamp = observation.stamp
-        self._navigator.set_goal(self._task.goal)
-        while observation.stamp - start_stamp < seconds:
-            base_in_odom = observation.odometry.base_in_odom
-            decision = self._navigator.tick(
-                observation.stamp, base_in_odom, base_in_odom, observation.odometry.twist, scan
-            )
+        step = self._episode.step()
+        while step.scan is None:
+            step = self._episode.step()
+        self._start_stamp = step.stamp
+        self.observer.record(0.0, step.base_in_world)
+        self._navigation.move_base.set_goal(self._task.goal)
+        self._navigation.at_tick(self._episode, step)
+        while self._end is None:
+            decision = self._navigation.result.decision
             if decision.status.is_final and decision.status is not Status.SUCCEEDED:
                 return FAILURE, decision.text
-            observation, scan = self._advance(decision.command)
-            self._record(observation, start_stamp)
-            cause = collision(sorted(self.collisions))
-            if cause:
-                place = observation.base_in_world
-                return COLLISION, f"{cause} at {place.x:.2f}, {place.y:.2f}"
-            if observation.base_in_world.distance_to(self._goal) <= self._task.radius:
-                return SUCCESS, "reached the goal"
-        return TIMEOUT, f"not done within {seconds:g} simulated seconds"
+            stamp = self._episode.advance().stamp
+            if self._end is None and stamp - self._start_stamp >= seconds:
+                return TIMEOUT, f"not done within {seconds:g} simulated seconds"
+        return self._end
 
-    def close(self) -> None:
-        self._simulation.close()
-
-    def _first_scan(self) -> StepResult:
-        while True:
-            observation = self._simulation.step()
-            if observation.scan is not None:
-                self._record(observation, observation.stamp)
-                return observation
-
-    def _advance(self, command: Optional[Twist2]) -> Tuple[StepResult, Optional[Scan]]:
-        """Simulate one control period; return the last step and the scan measured during it."""
-        scan = None
-        for _ in range(self._steps):
-            observation = self._simulation.step(command)
-            command, scan = None, observation.scan or scan
-            self.collisions.update(self.pedestrians.robot_collisions(observation))
-            place = FaultContext(self._simulation.scene, ROBOT_NAME, observation.base_in_world)
-            self._faults.update(observation.stamp, place)
-        return observation, scan
-
-    def _record(self, observation: StepResult, start_stamp: float) -> None:
-        truth = observation.base_in_world
-        self.trajectory.append((observation.stamp - start_stamp, truth.x, truth.y, truth.yaw))
-        self.pedestrians.record()
+    def at_tick(self, episode: Episode, step: StepResult) -> None:
+        """Record and judge a control period; its hooks precede those of navigation."""
+        truth = step.base_in_world
+        self.observer.record(step.stamp - self._start_stamp, truth)
+        cause = collision(sorted(set(self.observer.collisions)))
+        if cause:
+            self._end = COLLISION, f"{cause} at {truth.x:.2f}, {truth.y:.2f}"
+        elif truth.distance_to(self._goal) <= self._task.radius:
+            self._end = SUCCESS, "reached the goal"
 
 
 def navigation_config(robot: str) -> Path:

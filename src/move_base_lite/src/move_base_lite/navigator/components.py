@@ -15,7 +15,7 @@ from move_base_lite.control import (
 from move_base_lite.costmap import Observation
 from move_base_lite.dynamic_obstacles import DynamicObstacleTracker
 from move_base_lite.navigator.costmaps import Costmaps
-from move_base_lite.navigator.goal_execution import RobotState
+from move_base_lite.navigator.inputs import RobotState
 from move_base_lite.navigator.motion_prediction import predict_motion
 from move_base_lite.navigator.zones import Zones
 from move_base_lite.planning import GLOBAL_PLANNERS, PlanRequest

@@ -6,7 +6,7 @@ from typing import Dict, List, Optional, Sequence, Tuple
 from move_base_lite.config import NavigatorSettings
 from move_base_lite.costmap import INSCRIBED, LETHAL, UNKNOWN, LayeredCostmap, Observation, Polygon
 from move_base_lite.errors import GoalBlocked, OutOfMap
-from move_base_lite.navigator.goal_execution import RobotState
+from move_base_lite.navigator.inputs import RobotState
 from move_base_lite.navigator.zones import NavigationZone, Zones
 from planar import OccupancyGrid, Pose2
 

@@ -12,9 +12,10 @@ from planar import Twist2
 
 
 class Status(Enum):
-    """State of the Navigator; the last three are reported once, when a goal ends."""
+    """State of navigation; the last three are reported once, when a goal ends."""
 
     IDLE = "idle"
+    WAITING = "waiting"
     PLANNING = "planning"
     CONTROLLING = "controlling"
     CLEARING = "clearing"

@@ -8,6 +8,7 @@ import numpy as np
 
 from move_base_lite.errors import ControlError, NavigationError, PlanningError
 from move_base_lite.navigator.decision import GoalOutcome, GoalProgress, RecoveryTrigger, Status
+from move_base_lite.navigator.inputs import RobotState
 from move_base_lite.navigator.progress_checker import RecoveryProgressChecker
 from move_base_lite.recovery import RecoveryBehavior, SpeedLimit
 from planar import Pose2, Twist2, wrap
@@ -16,32 +17,6 @@ from planar import Pose2, Twist2, wrap
 MIN_TRAVEL_FOR_SPEED = 1.0
 # After so much commanded motion, metres plus radians, odometry must show at least this fraction of it.
 MIN_COMMANDED_MOTION, MIN_MOTION_FRACTION = 1.0, 0.1
-
-
-@dataclass(frozen=True)
-class RobotState:
-    """State of the robot at a control tick.
-
-    Attributes:
-        stamp: Time of the tick [s].
-        base_in_map: Pose in the map, from localization.
-        base_in_odom: Pose in the odometry frame.
-        twist: Velocity from odometry.
-    """
-
-    stamp: float
-    base_in_map: Pose2
-    base_in_odom: Pose2
-    twist: Twist2
-
-    def distance_to(self, other: "RobotState") -> float:
-        """Compute the distance on which localization and odometry agree [m].
-
-        It is the smaller of both: neither a jump of localization nor spinning wheels count as motion.
-        """
-        return min(
-            self.base_in_map.distance_to(other.base_in_map), self.base_in_odom.distance_to(other.base_in_odom)
-        )
 
 
 @dataclass

@@ -6,7 +6,7 @@ from typing import Any, Optional, Sequence
 import numpy as np
 
 from move_base_lite.config import NavigatorSettings
-from move_base_lite.costmap import LayeredCostmap, Observation, observation_from_scan
+from move_base_lite.costmap import LayeredCostmap, Observation
 from move_base_lite.errors import PlanningError, PluginFailed
 from move_base_lite.navigator.components import NavigatorComponents
 from move_base_lite.navigator.decision import (
@@ -19,11 +19,12 @@ from move_base_lite.navigator.decision import (
     Status,
     with_reason,
 )
-from move_base_lite.navigator.goal_execution import GoalExecution, RobotState
+from move_base_lite.navigator.goal_execution import GoalExecution
+from move_base_lite.navigator.inputs import NavigatorInputs, RobotState, accepts_separate_values
 from move_base_lite.navigator.state_machine import GoalAborted, GoalSucceeded, step
 from move_base_lite.navigator.zones import Zones
 from move_base_lite.planning import Potential
-from planar import OccupancyGrid, Pose2, Scan, Twist2
+from planar import OccupancyGrid, Pose2, Twist2
 from planar.deprecation import renamed_method
 from planar.geometry.pose import check_pose
 
@@ -49,34 +50,19 @@ class Navigator:
         self._new_goal: Optional[Pose2] = None
         self._execution: Optional[GoalExecution] = None
 
-    def tick(
-        self,
-        now: float,
-        base_in_map: Pose2,
-        base_in_odom: Pose2,
-        twist: Twist2,
-        scan: Optional[Scan],
-        observations: Sequence[Observation] = (),
-        latency: float = 0.0,
-    ) -> Decision:
+    @accepts_separate_values
+    def tick(self, state: RobotState, inputs: NavigatorInputs = NavigatorInputs()) -> Decision:
         """Run one control period.
 
         Args:
-            now: Time [s].
-            base_in_map: Robot pose in the map frame, from localization.
-            base_in_odom: Robot pose in the odometry frame.
-            twist: Velocity from odometry.
-            scan: New scan, transformed to the present pose; None if there is none.
-            observations: New data of other sensors, transformed to the present pose.
-            latency: Time until the command takes effect [s].
+            state: Time, poses and velocity of the robot.
+            inputs: Sensor data since the last tick, and the latency of commands.
 
         Returns:
             Velocity command for the coming period, and state of the goal.
         """
-        self._components.latency = latency
-        if scan is not None:
-            observations = [*observations, observation_from_scan(self.settings.scan_topic, scan)]
-        decision = self._decide(RobotState(now, base_in_map, base_in_odom, twist), observations)
+        self._components.latency = inputs.latency
+        decision = self._decide(state, inputs.observations)
         self._components.active_command = decision.command or Twist2()
         return decision
 

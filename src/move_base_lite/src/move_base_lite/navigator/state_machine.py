@@ -25,7 +25,8 @@ from move_base_lite.navigator.decision import (
     RecoveryTrigger,
     Status,
 )
-from move_base_lite.navigator.goal_execution import GoalExecution, RobotState
+from move_base_lite.navigator.goal_execution import GoalExecution
+from move_base_lite.navigator.inputs import RobotState
 from move_base_lite.planning import path_cost
 from move_base_lite.recovery import RECOVERIES, RecoveryContext
 from planar import Pose2, Twist2

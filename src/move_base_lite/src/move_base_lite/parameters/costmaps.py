@@ -11,6 +11,7 @@ from move_base_lite.costmap.layers.obstacles import OBSTACLES, VOXEL, ObstacleSe
 from move_base_lite.costmap.layers.static import STATIC, StaticSettings
 from move_base_lite.parameters.reader import ParameterReader, Tree, parameter_names, subtree
 from planar import SettingsError
+from planar.config.bounded_yaml import load_yaml
 from planar.extensions import Plugin
 
 # Parameters that costmaps inherit from move_base's namespace.
@@ -163,7 +164,7 @@ def parse_footprint(value: Any, name: str) -> Tuple[Tuple[float, float], ...]:
         SettingsError: The value is not a list of points.
     """
     try:
-        points = yaml.safe_load(value) if isinstance(value, str) else value
+        points = load_yaml(value) if isinstance(value, str) else value
         return tuple((float(x), float(y)) for x, y in points)
-    except (yaml.YAMLError, TypeError, ValueError, OverflowError, RecursionError):
+    except (yaml.YAMLError, TypeError, ValueError, OverflowError):
         raise SettingsError(f"{name} must be a list of points [x, y], got {value!r}") from None

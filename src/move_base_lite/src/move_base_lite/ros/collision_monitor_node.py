@@ -15,9 +15,9 @@ from planar.config.settings import settings_from
 from planar_ros.messages.conversion import LaserScanArrays, frame_name, scan_from_msg
 from planar_ros.messages.transforms import Transforms
 from planar_ros.messages.validation import subscribe
-from planar_ros.node.flush import publish_on_shutdown
 from planar_ros.node.parameters import parameters_below
 from planar_ros.node.runner import run
+from planar_ros.node.topics import publish_on_shutdown
 
 WARN_SECONDS = 5.0
 SILENT = "silent"

@@ -13,7 +13,7 @@ from move_base_lite.parameters import settings_from_parameters
 from move_base_lite.parameters.planners import REGISTRIES
 from move_base_lite.parameters.reconfigure import reconfigure_servers, with_changes
 from planar import SettingsError
-from planar_ros.node.reconfigure import ReconfigureServer
+from planar_ros.node.parameters import ReconfigureServer
 
 
 class ReconfigureServers:

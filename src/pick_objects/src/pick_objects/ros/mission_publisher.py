@@ -11,7 +11,7 @@ from pick_objects.job import DeliveryJob, ErrandState
 from pick_objects.mission import Delivery
 from planar import Pose2
 from planar_ros.messages.conversion import pose2_to_msg
-from planar_ros.node.flush import flush_and_close
+from planar_ros.node.topics import flush_and_close
 
 
 class MissionPublisher:

@@ -9,10 +9,9 @@ import rospy
 from home_service_msgs.msg import DeliverGoal
 from home_service_msgs.srv import AddDelivery, AddDeliveryResponse, CancelDelivery, CancelDeliveryResponse
 
-from pick_objects.approach import DriveToPlace
 from pick_objects.checkpoint import checkpoint_of, resume_errand
 from pick_objects.config import ErrandSettings, NodeSettings
-from pick_objects.errand import Errand, Event, MeasurePathLengths
+from pick_objects.errand import Errand, Event
 from pick_objects.mission import Mission, MissionError, errand_mission
 from pick_objects.mission_file import load_mission, parse_mission
 from pick_objects.ros.deliver_server import DeliverServer
@@ -42,12 +41,12 @@ class PickObjectsNode:
         self._map: Optional[OccupancyGrid] = None
         self._zones = load_places(self._settings.zones_file)
         self._mission = self._read_mission()
-        rospy.set_param("~places", sorted(self._places))  # for user interfaces
+        rospy.set_param("~places", list(self._places))  # for user interfaces, in the order of the file
         self._errand: Optional[Errand] = None
         self._checkpoint = ParameterCheckpoint() if self._settings.resume else None
         self._lock = threading.Lock()
         self._navigation = NavigationClient(self._settings.frame_id)
-        self._topics = MissionPublisher(self._settings.frame_id, lambda: self._navigation.base_in_map)
+        self._topics = MissionPublisher(self._settings.frame_id, lambda: self._navigation.driver.base_in_map)
         subscribe("map", OccupancyGridArrays, self._keep_map, queue_size=1)
         rospy.Service("~add_delivery", AddDelivery, self._on_add)
         rospy.Service("~cancel_delivery", CancelDelivery, self._on_cancel)
@@ -114,6 +113,7 @@ class PickObjectsNode:
             return FinishTask(False, obstacle)
         self._errand = errand
         event: Optional[Event] = None
+        driver = self._navigation.driver
         while not rospy.is_shutdown():
             with self._lock:
                 order = self._errand.advance(rospy.get_time(), event)
@@ -124,13 +124,10 @@ class PickObjectsNode:
                     self._navigation.move_base.cancel_all()
                     return order
                 watch(self._errand)
-            if isinstance(order, DriveToPlace):
-                self._navigation.send(order)
-            if isinstance(order, MeasurePathLengths):
-                event = self._navigation.measure(order)
-            else:
+            event = driver.carry_out(order)
+            if event is None:
                 self._step.pause(POLL_SECONDS)
-                event = self._navigation.event()
+                event = driver.event(rospy.get_time())
         return FinishTask(False, "interrupted")
 
     def _resume(self, mission: Mission) -> Errand:

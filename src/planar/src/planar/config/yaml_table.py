@@ -6,16 +6,16 @@ from typing import Any, Dict, Iterable, Iterator, List, Optional, Set, Tuple, Ty
 
 import yaml
 
+from planar.config.bounded_yaml import MAX_BYTES, TAG, BoundedLoader, check_length
 from planar.config.hints import hint_or_choices
 from planar.errors import PlanarError, SettingsError
 from planar.files.reading import read_text
 
 _REQUIRED: Any = object()
-# Far more than any table written by hand.
-MAX_BYTES = 4 << 20
-_TAG = "tag:yaml.org,2002:"
+# Longest value in a message [characters].
+MAX_SHOWN = 200
 # None stands for all other tags, which are refused.
-_KNOWN = {None, *(_TAG + kind for kind in ("null", "bool", "int", "float", "str", "seq", "map"))}
+_KNOWN = {None, *(TAG + kind for kind in ("null", "bool", "int", "float", "str", "seq", "map"))}
 
 
 def read_table(
@@ -59,6 +59,10 @@ def parse_table(text: str, source: str, error: Type[PlanarError] = SettingsError
         PlanarError: ``error``, if the text is not valid.
     """
     try:
+        check_length(text)
+    except ValueError as problem:
+        raise error(f"{source}: {problem}") from None
+    try:
         loader = _Loader(text)
         node = loader.get_single_node()
     except (yaml.YAMLError, RecursionError) as problem:
@@ -73,14 +77,14 @@ def parse_table(text: str, source: str, error: Type[PlanarError] = SettingsError
     return Table(document, node, "")
 
 
-class _Loader(yaml.SafeLoader):
-    """YAML loader restricted to the types of JSON: keys and dates are texts, binary data and sets errors."""
+class _Loader(BoundedLoader):
+    """Loader restricted to the types of JSON: keys and dates are texts, binary data and sets errors."""
 
     yaml_constructors = {
         tag: constructor for tag, constructor in yaml.SafeLoader.yaml_constructors.items() if tag in _KNOWN
     }
     yaml_implicit_resolvers = {
-        first: [(tag, pattern) for tag, pattern in resolvers if tag != f"{_TAG}timestamp"]
+        first: [(tag, pattern) for tag, pattern in resolvers if tag != f"{TAG}timestamp"]
         for first, resolvers in yaml.SafeLoader.yaml_implicit_resolvers.items()
     }
 
@@ -150,28 +154,28 @@ class Table:
         """Return a list of finite numbers, as many as ``names`` lists, e.g. ``x, y, yaw``."""
         values = self._needed(key)
         if not isinstance(values, list) or len(values) != len(names.split(", ")):
-            raise self.error_at(key, f"must be [{names}], got {values!r}")
+            raise self.error_at(key, f"must be [{names}], got {_shown(values)}")
         return tuple(self._as_number(key, value) for value in values)
 
     def count(self, key: str, default: int = _REQUIRED) -> int:
         """Return an integer of at least 1."""
         value = self._needed(key, default)
         if isinstance(value, bool) or not isinstance(value, int) or value < 1:
-            raise self.error_at(key, f"must be a whole number from 1, got {value!r}")
+            raise self.error_at(key, f"must be a whole number from 1, got {_shown(value)}")
         return value
 
     def flag(self, key: str, default: bool = _REQUIRED) -> bool:
         """Return a boolean."""
         value = self._needed(key, default)
         if not isinstance(value, bool):
-            raise self.error_at(key, f"must be true or false, got {value!r}")
+            raise self.error_at(key, f"must be true or false, got {_shown(value)}")
         return value
 
     def text(self, key: str, default: str = _REQUIRED) -> str:
         """Return a text that is not empty; a number counts as a text."""
         value = self._needed(key, default)
         if isinstance(value, (bool, dict, list)) or not str(value).strip():
-            raise self.error_at(key, f"must be a text, got {value!r}")
+            raise self.error_at(key, f"must be a text, got {_shown(value)}")
         return str(value)
 
     def path(self, key: str, folder: Path) -> Path:
@@ -188,14 +192,14 @@ class Table:
         values = self.value(key) or []
         values = values if isinstance(values, list) else [values]
         if any(isinstance(value, (bool, dict, list)) or value is None for value in values):
-            raise self.error_at(key, f"must be a list of texts, got {values!r}")
+            raise self.error_at(key, f"must be a list of texts, got {_shown(values)}")
         return [str(value) for value in values]
 
     def choice(self, key: str, choices: Iterable[str], default: str = _REQUIRED) -> str:
         """Return a text that must be one of ``choices``."""
         value = self._needed(key, default)
         if not isinstance(value, str) or value not in choices:
-            raise self.error_at(key, f"must be one of {', '.join(choices)}, got {value!r}")
+            raise self.error_at(key, f"must be one of {', '.join(choices)}, got {_shown(value)}")
         return value
 
     def table(self, key: str) -> "Table":
@@ -203,7 +207,7 @@ class Table:
         self._needed(key)
         node = self._entries[key][1]
         if not isinstance(node, yaml.MappingNode):
-            raise self.error_at(key, f"must be a table of keys and values, got {self.value(key)!r}")
+            raise self.error_at(key, f"must be a table of keys and values, got {_shown(self.value(key))}")
         return Table(self._document, node, self._full(key))
 
     def tables(self, key: str) -> List["Table"]:
@@ -229,7 +233,7 @@ class Table:
     def check(self, condition: bool, key: str, requirement: str) -> None:
         """Raise the error ``<key> must be <requirement>`` unless a condition holds."""
         if not condition:
-            raise self.error_at(key, f"must be {requirement}, got {self.value(key)!r}")
+            raise self.error_at(key, f"must be {requirement}, got {_shown(self.value(key))}")
 
     def error_at(self, key: str, text: str) -> PlanarError:
         """Return the error ``<file>:<line>: <key> <text>``; without the key the line is that of the table."""
@@ -263,8 +267,14 @@ class Table:
         except (TypeError, ValueError, OverflowError):
             number = math.nan
         if isinstance(value, bool) or not math.isfinite(number):
-            raise self.error_at(key, f"must be a number, got {value!r}")
+            raise self.error_at(key, f"must be a number, got {_shown(value)}")
         return number
+
+
+def _shown(value: Any) -> str:
+    """Return a value as it is shown in a message."""
+    text = repr(value)
+    return text if len(text) <= MAX_SHOWN else f"{text[:MAX_SHOWN]}..."
 
 
 def _check_keys(document: _Document, root: yaml.Node) -> None:

@@ -6,7 +6,8 @@ import actionlib
 import rospy
 
 from planar_ros.lockstep import LockstepClient
-from planar_ros.node.flush import flush_and_close
+from planar_ros.node.topics import flush_and_close
+from rospy_transport.connections import connected_publishers, is_connected
 
 # Most ended goals in the status message, and most goals tracked before pruning: actionlib searches each new
 # goal among the tracked ones.
@@ -120,9 +121,8 @@ def server_is_ready(client: actionlib.SimpleActionClient) -> bool:
     # Other nodes may subscribe to goals too, such as rosbag record.
     server = inner.last_status_msg._connection_header["callerid"]
     publishers = (inner.pub_goal, inner.pub_cancel)
-    is_subscribed = all(publisher.impl.has_connection(server) for publisher in publishers)
-    # rospy counts a connection before its handshake, after which callerid_pub is known.
-    return is_subscribed and any(each.callerid_pub == server for each in inner.result_sub.impl.connections)
+    is_subscribed = all(is_connected(publisher, server) for publisher in publishers)
+    return is_subscribed and server in connected_publishers(inner.result_sub)
 
 
 def goal_is_over(client: actionlib.SimpleActionClient) -> bool:

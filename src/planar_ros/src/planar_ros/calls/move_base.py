@@ -16,7 +16,7 @@ from planar.driving import DriveOutcome
 from planar_ros.calls.actions import goal_is_lost, goal_is_over, server_connection, server_is_ready
 from planar_ros.calls.services import call_service
 from planar_ros.messages.conversion import pose2_from_msg, pose2_to_msg
-from planar_ros.node.flush import flush_and_close
+from planar_ros.node.topics import flush_and_close
 
 # Wall-clock time to wait for a plan [s].
 PLAN_SECONDS = 5.0

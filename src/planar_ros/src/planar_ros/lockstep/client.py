@@ -13,10 +13,19 @@ from std_msgs.msg import Header
 
 from planar_ros.lockstep import transport
 from planar_ros.lockstep.message_buffer import MessageBuffer
-from planar_ros.lockstep.service_calls import CallMonitor, call_headers, delay_service_replies
-from planar_ros.lockstep.threads import LockstepThreads
-from planar_ros.lockstep.ticker import ProgressPublisher, Ticker
-from planar_ros.lockstep.transport import ANSWER_TOPIC, INSTANT_TOPIC, STATIC_TOPIC, LockstepConnection
+from planar_ros.lockstep.ticker import LockstepThreads, ProgressPublisher, Ticker
+from planar_ros.lockstep.transport import (
+    ANSWER_TOPIC,
+    INSTANT_TOPIC,
+    STATIC_TOPIC,
+    CallMonitor,
+    LockstepConnection,
+    call_headers,
+    delaying_calls,
+)
+from rospy_transport.connections import connected_publishers
+from rospy_transport.node import is_shutting_down, set_time
+from rospy_transport.replacements import install
 
 Hook = Callable[[], None]
 TickCallback = Callable[[rospy.Time], None]
@@ -67,10 +76,8 @@ class LockstepClient:
         self._working = threading.Condition()
         self._answers: Optional[rospy.Publisher] = None
         if rospy.get_param("/use_sim_time", False):
-            transport.install()
-            self._buffer.install()
             monitor = CallMonitor(lambda: self._buffer.members, self.add_remark)
-            delay_service_replies(self._await_answer, monitor)
+            install(LockstepConnection, self._buffer.receive, delaying_calls(self._await_answer, monitor))
             self._answers = rospy.Publisher(ANSWER_TOPIC, Answer, queue_size=10, tcp_nodelay=True)
             rospy.Subscriber(INSTANT_TOPIC, Moment, self._on_instant, queue_size=100, tcp_nodelay=True)
             rospy.on_shutdown(self._answer_last)
@@ -168,7 +175,7 @@ class LockstepClient:
 
     def _run(self, is_ready: Callable[[], bool]) -> None:
         """Ask to join while the node is not synchronized; otherwise serve unsynchronized nodes."""
-        while not rospy.core.is_shutdown_requested():
+        while not is_shutting_down():
             if self.is_synchronized:
                 self._serve_unsynchronized()
             elif is_ready():
@@ -201,7 +208,7 @@ class LockstepClient:
             self._reported_counts.clear()
         self._required.update(_sent_to(self._name, message))
         self._number, self._latency = message.number, message.latency.to_sec()
-        rospy.rostime._set_rostime(message.header.stamp)
+        set_time(message.header.stamp)
         for missing in self._buffer.release({**initial, **self._required}):
             rospy.logwarn("at %.2f s: %s", message.header.stamp.to_sec(), missing)
             self.add_remark(f"{self._name}: {missing}")
@@ -237,7 +244,7 @@ class LockstepClient:
 
     def _leave(self) -> None:
         """Continue without lock-step, since the simulator stopped waiting, and ask to join again."""
-        if not rospy.core.is_shutdown_requested():
+        if not is_shutting_down():
             rospy.logwarn("the simulation no longer waits for this node; asking to join again")
         LockstepConnection.members = frozenset()
         transport.flush()
@@ -262,8 +269,7 @@ class LockstepClient:
 
 def has_synchronized_publisher(topic: rospy.Subscriber) -> bool:
     """Return whether a synchronized node publishes on the topic, so that its messages take simulated time."""
-    expected = rospy.get_param(WAIT_FOR_PARAMETER, [])
-    return any(connection.callerid_pub in expected for connection in topic.impl.connections)
+    return not connected_publishers(topic).isdisjoint(rospy.get_param(WAIT_FOR_PARAMETER, []))
 
 
 def observers() -> FrozenSet[str]:

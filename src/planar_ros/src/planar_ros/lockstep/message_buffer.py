@@ -2,15 +2,13 @@
 
 import threading
 import time
-import traceback
 from collections import deque
-from typing import Any, Callable, Deque, Dict, FrozenSet, List, Mapping, Optional, Sequence, Set, Tuple
-
-import rospy
-from rospy.topics import _SubscriberImpl
+from typing import Callable, Deque, Dict, FrozenSet, List, Mapping, Optional, Sequence, Set, Tuple
 
 from planar_ros.lockstep.ticker import PROGRESS_TOPIC
-from planar_ros.lockstep.transport import CLOCK_TOPIC, STATIC_TOPIC, UNCOUNTED, SerializedMessage
+from planar_ros.lockstep.transport import CLOCK_TOPIC, STATIC_TOPIC, UNCOUNTED
+from rospy_transport.connections import is_subscribed
+from rospy_transport.replacements import IncomingConnection, SerializedMessage
 
 # Longest time in transit of a message [wall s].
 PATIENCE_SECONDS = 4.0
@@ -18,7 +16,6 @@ PATIENCE_SECONDS = 4.0
 FIRST_TOPICS = (STATIC_TOPIC, "/tf")
 # Topics whose messages from unsynchronized nodes do not affect repeatability.
 HARMLESS_TOPICS = frozenset((*FIRST_TOPICS, *UNCOUNTED, PROGRESS_TOPIC))
-_receive = _SubscriberImpl.receive_callback
 
 
 class _Channel:
@@ -27,20 +24,13 @@ class _Channel:
     Messages left by a ``previous`` connection are not counted and are delivered first.
     """
 
-    def __init__(self, subscriber: Any, connection: Any, previous: Optional["_Channel"]):
-        self.subscriber, self.connection = subscriber, connection
-        self.message_class = connection.protocol.recv_data_class
+    def __init__(self, connection: IncomingConnection, previous: Optional["_Channel"]):
+        self.connection = connection
         self.received = 0
         self.waiting: Deque[SerializedMessage] = deque()
-        self.latch: Any = None
         self._overdue: List[SerializedMessage] = (
             [] if previous is None else [*previous._overdue, *previous.waiting]
         )
-        self._socket = connection.socket
-
-    def is_of(self, connection: Any) -> bool:
-        """Return whether the channel belongs to a connection; rospy may reuse the object for a new one."""
-        return self.connection is connection and self._socket is connection.socket
 
     def pop(self, number: Optional[int]) -> List[SerializedMessage]:
         """Remove and return overdue messages and the first ``number`` waiting ones, or all."""
@@ -51,6 +41,8 @@ class _Channel:
 
 class MessageBuffer:
     """Delivers messages at once, or, while nodes are synchronized, those of synchronized nodes on release.
+
+    Its ``receive`` is given to ``rospy_transport.replacements.install``.
 
     Attributes:
         members: Synchronized nodes.
@@ -69,17 +61,6 @@ class MessageBuffer:
         self._reported: Set[Tuple[str, str]] = set()
         self._channels: Dict[Tuple[str, str], _Channel] = {}
         self._changed = threading.Condition()
-
-    def install(self) -> None:
-        """Deliver the messages of all subscribers of this node through this buffer."""
-
-        def receive(subscriber: Any, frames: Sequence[Any], connection: Any) -> None:
-            if frames and isinstance(frames[0], SerializedMessage):
-                self._on_receive(subscriber, frames, connection)
-            else:  # a connection made before
-                _receive(subscriber, frames, connection)
-
-        _SubscriberImpl.receive_callback = receive
 
     def release(self, required: Mapping[Tuple[str, str], int]) -> List[str]:
         """Deliver the required messages, and all of unsynchronized nodes.
@@ -106,7 +87,7 @@ class MessageBuffer:
                 if frames:
                     due.append((topic, sender, channel, frames))
         for _, _, channel, frames in sorted(due, key=_order):
-            _deliver(channel, frames)
+            channel.connection.deliver(frames)
         return missing
 
     def release_unsynchronized(self) -> None:
@@ -118,7 +99,7 @@ class MessageBuffer:
                 if sender not in self.members
             ]
         for _, _, channel, frames in sorted(due, key=_order):
-            _deliver(channel, frames)
+            channel.connection.deliver(frames)
 
     def release_all(self) -> None:
         """Deliver all messages and stop buffering."""
@@ -126,22 +107,22 @@ class MessageBuffer:
             self.members = frozenset()
         self.release({})
 
-    def _on_receive(self, subscriber: Any, frames: Sequence[SerializedMessage], connection: Any) -> None:
-        topic, sender = subscriber.resolved_name, connection.callerid_pub
+    def receive(self, connection: IncomingConnection, frames: Sequence[SerializedMessage]) -> None:
+        """Deliver the messages that a connection has received, or hold them."""
+        topic, sender = connection.topic, connection.sender
         if self.members and sender not in self.members and not connection.is_latched:
             self._report_unsynchronized(topic, sender)
         with self._changed:
             channel = self._channels.get((topic, sender))
-            if channel is None or not channel.is_of(connection):
-                channel = self._channels[topic, sender] = _Channel(subscriber, connection, channel)
-            connection.latch = channel.latch  # rospy has set it to a serialized message
+            if channel is None or channel.connection is not connection:
+                channel = self._channels[topic, sender] = _Channel(connection, channel)
             if self._holds(topic, sender):
                 channel.waiting.extend(frames)
                 channel.received += len(frames)
                 self._changed.notify_all()
                 return
         if not (topic == CLOCK_TOPIC and self.members):
-            _deliver(channel, frames)
+            channel.connection.deliver(frames)
         with self._changed:  # only after delivery, since waiting threads rely on it
             channel.received += len(frames)
             self._changed.notify_all()
@@ -160,31 +141,9 @@ class MessageBuffer:
         channel = self._channels.get((topic, sender))
         if count <= (0 if channel is None else channel.received):
             return True
-        return topic not in rospy.topics.get_topic_manager().subs  # unsubscribed meanwhile
+        return not is_subscribed(topic)  # unsubscribed meanwhile
 
 
 def _order(entry) -> Tuple[int, str, str]:
     topic, sender = entry[:2]
     return (FIRST_TOPICS.index(topic) if topic in FIRST_TOPICS else len(FIRST_TOPICS)), topic, sender
-
-
-def _deliver(channel: _Channel, frames: Sequence[SerializedMessage]) -> None:
-    """Call the callbacks of a subscriber with the latest messages, at most its queue size."""
-    subscriber, connection = channel.subscriber, channel.connection
-    if subscriber.queue_size is not None:
-        frames = frames[-subscriber.queue_size :]
-    messages = []
-    for frame in frames:
-        try:
-            message = channel.message_class().deserialize(frame.data)
-        except Exception:
-            rospy.logerr(
-                "%s: cannot deserialize a message: %s", subscriber.resolved_name, traceback.format_exc()
-            )
-            continue
-        message._connection_header = connection.header
-        messages.append(message)
-    if messages and connection.is_latched:
-        connection.latch = channel.latch = messages[-1]
-    if messages and subscriber.callbacks:
-        _receive(subscriber, messages, connection)

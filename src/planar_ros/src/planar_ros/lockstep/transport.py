@@ -1,26 +1,43 @@
-"""Connections of synchronized nodes: messages are counted and sent in one batch for each logical instant."""
+"""What synchronized nodes send: messages, counted and in one batch for each instant, and service calls."""
 
 import threading
 from collections import deque
 from contextlib import suppress
-from io import BytesIO
-from typing import Any, ClassVar, Deque, Dict, FrozenSet, Iterator, List, Optional, Tuple
+from typing import (
+    Any,
+    Callable,
+    ClassVar,
+    Collection,
+    Deque,
+    Dict,
+    FrozenSet,
+    List,
+    Mapping,
+    Optional,
+    Set,
+    Tuple,
+)
 
-import rospy.topics
-from rospy.impl.tcpros_pubsub import TCPROSSub
-
-from planar_ros.node.connections import ImmediateConnection
+from rospy_transport import connections
+from rospy_transport.replacements import BeforeCall, ImmediateConnection
 
 INSTANT_TOPIC, ANSWER_TOPIC, CLOCK_TOPIC = "/simulation/moment", "/simulation/answer", "/clock"
 STATIC_TOPIC = "/tf_static"
 # Sent outside the batches: instants and answers carry the counts of all other messages, the clock the time.
 UNCOUNTED = frozenset((INSTANT_TOPIC, ANSWER_TOPIC, CLOCK_TOPIC))
-LENGTH_BYTES = 4
 # Maximum number of messages to an observer in one batch.
 MAX_BATCH = 10
+INSTANT_HEADER = "moment"
+# Services that change nothing in the simulation, whenever they are called. Time that is paused, or advances
+# step by step, gives the same run.
+READ_ONLY = frozenset(
+    ("make_plan", "static_map", "dynamic_map", "set_logger_level", "tf2_frames")
+    + ("pause_physics", "unpause_physics", "step")
+)
+READ_ONLY_PREFIX = "get_"
+_local = threading.local()
 # Counts by receiver and topic of connections that may have been removed since.
 _last_counts: Dict[Tuple[str, str], int] = {}
-_init = TCPROSSub.__init__
 
 
 class LockstepConnection(ImmediateConnection):
@@ -34,7 +51,6 @@ class LockstepConnection(ImmediateConnection):
         observers: Unsynchronized nodes that must receive all messages.
         batching_thread: Identifier of the thread that batches messages to observers.
         count: Number of messages sent.
-        receiver: Name of the receiving node.
     """
 
     members: ClassVar[FrozenSet[str]] = frozenset()
@@ -42,26 +58,31 @@ class LockstepConnection(ImmediateConnection):
     batching_thread: ClassVar[Optional[int]] = None
     _unsent: ClassVar[Deque["LockstepConnection"]] = deque()
 
-    def __init__(self, connection, queue_size: int):
+    def __init__(self, connection: Any, queue_size: int):
         self.count = 0
-        self.receiver, self._topic = connection.endpoint_id, connection.protocol.resolved_name
         self._batch: List[bytes] = []
         # Reentrant, since a message may be sent while others are; the order is that of the calls.
         self._batch_lock = threading.RLock()
         super().__init__(connection, queue_size)
 
-    def write_data(self, data) -> bool:
+    def write_data(self, data: bytes) -> bool:
         is_member = self.receiver in self.members
-        if is_member and self._topic == CLOCK_TOPIC:
+        if is_member and self.topic == CLOCK_TOPIC:
             return True
         with self._batch_lock:
             self.count += 1
-            if is_member and self._topic not in UNCOUNTED:
+            if is_member and self.topic not in UNCOUNTED:
                 return self._append(data)
             if self._may_batch() and len(self._batch) < MAX_BATCH:
                 return self._append(data)
             self._send_batch()
             return super().write_data(data)
+
+    def has_unsent(self) -> bool:
+        return bool(self._batch) or super().has_unsent()
+
+    def message_count(self) -> int:
+        return self.count
 
     @classmethod
     def flush_all(cls) -> None:
@@ -76,21 +97,19 @@ class LockstepConnection(ImmediateConnection):
             try:
                 self._send_batch()
             except Exception as error:
-                self._error = error
+                self.fail(error)
 
     def _may_batch(self) -> bool:
         if self.batching_thread is None or threading.get_ident() != self.batching_thread:
             return False
-        return self._topic == CLOCK_TOPIC or (
-            self.receiver in self.observers and self._topic not in UNCOUNTED
-        )
+        return self.topic == CLOCK_TOPIC or (self.receiver in self.observers and self.topic not in UNCOUNTED)
 
-    def _append(self, data) -> bool:
-        if self._error or self._connection.done:
+    def _append(self, data: bytes) -> bool:
+        if self.is_broken:
             return super().write_data(data)
-        if self._topic != CLOCK_TOPIC:
-            self._queue_size = 0  # rospy's value for an unlimited queue
         if not self._batch:
+            if self.topic != CLOCK_TOPIC:
+                self.keep_all()
             self._unsent.append(self)
         self._batch.append(data)
         return True
@@ -99,57 +118,6 @@ class LockstepConnection(ImmediateConnection):
         if self._batch:
             batch, self._batch = b"".join(self._batch), []
             super().write_data(batch)
-
-
-class SerializedMessage:
-    """A received message that is not deserialized yet."""
-
-    __slots__ = ("_connection_header", "data")
-
-    def __init__(self, data: bytes):
-        self.data = data
-        self._connection_header: Dict[str, str] = {}
-
-
-def install() -> None:
-    """Use these connections for this node from now on."""
-    rospy.topics.QueuedConnection = LockstepConnection
-    TCPROSSub.__init__ = _init_for_serialized
-
-
-def _init_for_serialized(self: TCPROSSub, *given: Any, **named: Any) -> None:
-    """Receive serialized messages; earlier connections, such as that of /clock, still receive messages."""
-    _init(self, *given, **named)
-    self.read_messages = _read_serialized
-
-
-def _read_serialized(b: BytesIO, msg_queue: List[SerializedMessage], sock: object) -> None:
-    """Split received bytes into serialized messages, which a MessageBuffer deserializes."""
-    end, at = b.tell(), 0
-    with b.getbuffer() as view:
-        while end - at >= LENGTH_BYTES:
-            start = at + LENGTH_BYTES
-            size = int.from_bytes(view[at:start], "little")
-            if end - start < size:
-                break
-            msg_queue.append(SerializedMessage(bytes(view[start : start + size])))
-            at = start + size
-        rest = bytes(view[at:end]) if at else b""
-    if at:
-        b.seek(0)
-        b.truncate(0)
-        b.write(rest)
-
-
-def connections() -> Iterator[Tuple[str, str, Any]]:
-    """Yield receiver, topic and connection of everything this node publishes.
-
-    rospy makes a normal connection for a subscriber that connects before the queue size of the topic is
-    known.
-    """
-    for topic, publisher in list(rospy.topics.get_topic_manager().pubs.items()):
-        for connection in publisher.connections:
-            yield connection.endpoint_id, topic, connection
 
 
 def flush() -> None:
@@ -168,8 +136,8 @@ def remember_counts(topic: str) -> None:
     rospy removes closed connections twice a second, and so possibly before the answer to the instant.
     """
     _last_counts.update(
-        ((receiver, name), _count_of(connection))
-        for receiver, name, connection in connections()
+        ((receiver, name), connections.message_count(connection))
+        for receiver, name, connection in connections.outgoing()
         if name == topic
     )
 
@@ -178,8 +146,8 @@ def sent(sender: str) -> Dict[str, int]:
     """Return the number of messages sent to each synchronized node, by ``sender receiver topic``."""
     members = LockstepConnection.members
     now = {
-        (receiver, topic): _count_of(connection)
-        for receiver, topic, connection in connections()
+        (receiver, topic): connections.message_count(connection)
+        for receiver, topic, connection in connections.outgoing()
         if receiver in members and topic not in UNCOUNTED
     }
     for channel, count in list(_last_counts.items()):
@@ -190,12 +158,70 @@ def sent(sender: str) -> Dict[str, int]:
     return {f"{sender} {receiver} {topic}": count for (receiver, topic), count in now.items()}
 
 
-def _count_of(connection: Any) -> int:
-    is_counted = isinstance(connection, LockstepConnection)
-    return int(connection.count if is_counted else connection.stat_num_msg)
-
-
 def topology() -> int:
     """Return a number that changes with the topics of the node."""
-    manager = rospy.topics.get_topic_manager()
-    return hash((frozenset(manager.pubs), frozenset(manager.subs))) & 0xFFFFFFFF
+    return hash(connections.topic_names()) & 0xFFFFFFFF
+
+
+class CallMonitor:
+    """Notes each service that a node calls which is not synchronized: the call comes at a random moment.
+
+    Args:
+        members: Returns the names of the synchronized nodes; none while nothing is synchronised.
+        note: Called with a text.
+        harmless: Resolved names of further services that change nothing in the simulation.
+    """
+
+    def __init__(
+        self,
+        members: Callable[[], Collection[str]],
+        note: Callable[[str], None],
+        harmless: Collection[str] = (),
+    ):
+        self._members, self._note = members, note
+        self._known: Set[str] = set(harmless)
+
+    def check(self, service: str, caller: str) -> None:
+        """Note a call, the first of each service.
+
+        Args:
+            service: Resolved name of the service.
+            caller: Name of the calling node.
+        """
+        members, name = self._members(), service.rsplit("/", 1)[-1]
+        if not members or caller in members or service in self._known:
+            return
+        if name not in READ_ONLY and not name.startswith(READ_ONLY_PREFIX):
+            self._known.add(service)
+            self._note(f"the service {service} was called by {caller}, which is not synchronized")
+
+
+def call_headers(instant: int) -> Dict[str, str]:
+    """Return the headers of a call at an instant; empty for 0, i.e. when the node is not synchronized."""
+    return {INSTANT_HEADER: str(instant)} if instant else {}
+
+
+def caller() -> str:
+    """Return the synchronized node whose call this thread answers; empty if there is none."""
+    return getattr(_local, "caller", "")
+
+
+def delaying_calls(wait: Callable[[int], None], monitor: Optional[CallMonitor] = None) -> BeforeCall:
+    """Return what ``rospy_transport.replacements.install`` calls before a service's callback.
+
+    It delays each call of a synchronized node until ``wait(number of its instant)`` returns.
+
+    Args:
+        wait: Blocks until an instant.
+        monitor: Checks the calls of other nodes.
+    """
+
+    def before_call(service: str, header: Mapping[str, str]) -> None:
+        number = header.get(INSTANT_HEADER, "0")
+        _local.caller = header.get("callerid", "") if number.isdigit() and int(number) else ""
+        if _local.caller:
+            wait(int(number))
+        elif monitor is not None:
+            monitor.check(service, header.get("callerid", ""))
+
+    return before_call

@@ -19,8 +19,8 @@ def start_node(function: str) -> None:
 
 def start_forked(function: str) -> None:
     """Call the main function in a child of the fork server, with rospy's names of its command line."""
-    if "rospy.names" in sys.modules:
-        importlib.reload(sys.modules["rospy.names"])
+    if "rospy" in sys.modules:
+        importlib.import_module("rospy_transport.node").reload_remappings()
     call(function)
 
 

@@ -10,11 +10,11 @@ from typing import Any, Callable, List
 
 import rospy
 from rosgraph import get_master_uri
-from rospy.impl.paramserver import get_param_server_cache
 
 from planar import PlanarError
-from planar_ros.node.connections import extend_listen_backlog, merge_publisher_updates
 from planar_ros.node.entry import use_one_blas_thread
+from rospy_transport.node import cache_parameter, on_unregistered
+from rospy_transport.replacements import install
 from supervision.interruption import on_signals
 from supervision.streams import ignore_write_errors
 
@@ -52,8 +52,7 @@ def run(node_name: str, start: Callable[[], object]) -> None:
     logging.getLogger("rosout").addFilter(
         lambda record: not (is_ending.is_set() and _is_about_shutdown(record))
     )
-    # Called after rospy's hooks, when the node is unregistered at the master and its peers.
-    rospy.core.add_shutdown_hook(lambda _reason: is_over.set())
+    on_unregistered(is_over.set)
     try:
         node = start()
         is_over.wait()
@@ -82,10 +81,9 @@ def init_node(name: str, **options: Any) -> None:
         name: Name of the node.
         options: Further arguments of ``rospy.init_node``; signals are left to the caller.
     """
-    extend_listen_backlog()
-    merge_publisher_updates()
+    install()
     rospy.init_node(name, **{"disable_signals": True, **options})
-    get_param_server_cache().set(LOG_WITHOUT_TOPICS, rospy.get_param(LOG_WITHOUT_TOPICS, False))
+    cache_parameter(LOG_WITHOUT_TOPICS, rospy.get_param(LOG_WITHOUT_TOPICS, False))
 
 
 def shut_down_on_signals(goes_on: bool = False) -> None:

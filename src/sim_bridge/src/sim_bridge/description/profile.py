@@ -1,8 +1,9 @@
 """Robot profiles: parts, drive and sensors."""
 
+import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Optional, Tuple, Type, TypeVar
+from typing import Optional, Set, Tuple, Type, TypeVar
 
 from sim_bridge.description.structure import RobotModel
 from sim_bridge.driving.drive import DriveProfile
@@ -57,6 +58,16 @@ class RobotProfile:
     def description(self) -> str:
         """Return the URDF or SDF text that the robot was read from."""
         return self.text
+
+    def frames_below(self, frame: str) -> Set[str]:
+        """Return a frame and all links of the URDF below it, which robot_state_publisher connects to it."""
+        joints = ElementTree.fromstring(self.text).findall("joint")
+        ends = [{end.tag: end.get("link", "") for end in joint} for joint in joints]
+        frames, more = {frame}, {frame}
+        while more:
+            more = {end["child"] for end in ends if end.get("parent") in more and "child" in end} - frames
+            frames |= more
+        return frames
 
     def sensors_of(self, kind: Type[Spec]) -> Tuple[Spec, ...]:
         """Return the sensor specifications of a class, such as LaserProfile."""

@@ -8,6 +8,8 @@ from planar import Twist2
 
 # Rate at which a base sets its motors [Hz]; Kobuki's odometry has the same.
 BASE_RATE = 50
+# Time without motion after which a base counts as standing [s].
+REST_SECONDS = 6.0
 
 
 class WheelDrive(Protocol):

@@ -100,6 +100,11 @@ class Motors:
             self._body_id, self._indices, pybullet.VELOCITY_CONTROL, targetVelocities=speeds, forces=efforts
         )
 
+    def reset(self, angles: Sequence[float]) -> None:
+        """Set the angles of the joints [rad], in their order, at rest."""
+        for index, angle in zip(self._indices, angles):
+            self._bullet.resetJointState(self._body_id, index, angle, 0.0)
+
     def states(self) -> Tuple[Tuple[float, ...], Tuple[float, ...]]:
         """Return the angles [rad] and the speeds [rad/s] of the joints, in their order."""
         states = self._bullet.getJointStates(self._body_id, self._indices)

@@ -8,6 +8,7 @@ from planar import Twist2
 from sim_bridge.physics.collision_queries import Contact
 from sim_bridge.physics.engine import Engine
 from sim_bridge.physics.kinematics import KinematicState
+from sim_bridge.physics.standstill import Standstill
 from sim_bridge.world import Body, Joint
 
 # Penetration of the floor that is accepted at the start [m].
@@ -70,18 +71,23 @@ class Vehicle:
         self._motors = engine.joints.motors([joint.name for joint in joints])
         self._engine = engine
         self._speeds: Optional[Tuple[float, float]] = None
+        self._standstill = Standstill(engine, self.base, self._motors)
 
-    def drive(self, left_speed: float, right_speed: float) -> None:
+    def drive(self, left_speed: float, right_speed: float, seconds: float) -> None:
         """Set the target speeds of the wheels.
 
         Args:
             left_speed: Of the wheels on the left [rad/s].
             right_speed: Of the wheels on the right [rad/s].
+            seconds: Time since the last call [s].
         """
         if self._speeds != (left_speed, right_speed):
             self._speeds = (left_speed, right_speed)
             speeds = [left_speed] * self._left_count + [right_speed] * self._right_count
             self._motors.set_velocities(speeds, self._efforts)
+            self._standstill.release()
+        elif left_speed == right_speed == 0.0:
+            self._standstill.update(seconds)
 
     def invalidate_speeds(self) -> None:
         """Send the target speeds again at the next ``drive``, even if they are unchanged."""

@@ -7,7 +7,7 @@ from typing import Callable, Collection, Deque, Tuple, TypeVar
 
 import rospy
 
-from planar_ros.lockstep.service_calls import caller
+from planar_ros.lockstep.transport import caller
 
 T = TypeVar("T")
 

@@ -4,11 +4,12 @@ from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
 
 import rospy
 from geometry_msgs.msg import Twist
+from rosgraph.names import ns_join
 from std_msgs.msg import String
 
 from planar import SettingsError, Twist2
 from planar.config.parameters import DynamicParameter
-from planar_ros.node.reconfigure import ReconfigureServer
+from planar_ros.node.parameters import ReconfigureServer
 from sim_bridge.driving.mux import (
     TURTLEBOT_INPUTS,
     MuxInput,
@@ -55,7 +56,7 @@ class CommandTopics:
             connection.unregister()
 
     def _subscribed(self, namespace: str, topic: str, callback: Callable, *arguments) -> rospy.Subscriber:
-        name = rospy.names.ns_join(namespace, topic)
+        name = ns_join(namespace, topic)
         return rospy.Subscriber(
             name, Twist, lambda message: callback(self._twist(message), *arguments), queue_size=1,
             tcp_nodelay=True,
@@ -84,7 +85,7 @@ class MuxTopics(CommandTopics):
 
     def __init__(self, robot: str, namespace: str, topics):
         super().__init__(robot, namespace, topics)
-        self._where = where = rospy.names.ns_join(namespace, MUX)
+        self._where = where = ns_join(namespace, MUX)
         file = rospy.get_param(f"{where}/{MUX_FILE}", "")
         self._smoother = VelocitySmoother()
         self._arrived: Dict[str, Twist2] = {}

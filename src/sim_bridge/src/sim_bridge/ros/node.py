@@ -11,9 +11,11 @@ from visualization_msgs.msg import Marker
 from planar import PlanarError, Pose2
 from planar.config.settings import check
 from planar_ros.lockstep import transport
+from planar_ros.lockstep.transport import LockstepConnection
 from planar_ros.messages.conversion import pose2_from_msg, time_of
 from planar_ros.node.parameters import parameters_below, read_settings
 from planar_ros.node.runner import run
+from rospy_transport.replacements import install
 from sim_bridge.config import BridgeSettings, RobotSettings, SimulationSettings
 from sim_bridge.description import read_sdf_robot
 from sim_bridge.geometry.pose3 import to_pose2
@@ -153,5 +155,5 @@ def _names(text: str) -> List[str]:
 
 
 def main():
-    transport.install()
+    install(LockstepConnection)
     run("sim_bridge", lambda: Bridge().run())

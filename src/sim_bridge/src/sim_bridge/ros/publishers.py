@@ -3,7 +3,9 @@
 from typing import List
 
 import rospy
-from rospy.impl.tcpros_pubsub import QueuedConnection
+from rosgraph.names import ns_join
+
+from rospy_transport.connections import full_queues
 
 
 class CountingPublisher(rospy.Publisher):
@@ -15,7 +17,7 @@ class CountingPublisher(rospy.Publisher):
 
     def publish(self, *arguments, **named):
         self.published += 1
-        self.dropped += sum(_is_full(connection) for connection in self.impl.connections)
+        self.dropped += full_queues(self)
         super().publish(*arguments, **named)
 
 
@@ -43,7 +45,7 @@ class RobotPublishers:
             queue_size: Number of messages that wait for a slow subscriber.
             latch: Whether new subscribers receive the last message.
         """
-        name = rospy.names.ns_join(self._namespace, topic)
+        name = ns_join(self._namespace, topic)
         publisher = CountingPublisher(name, kind, queue_size=queue_size, latch=latch, tcp_nodelay=True)
         self.publishers.append(publisher)
         return publisher
@@ -56,10 +58,3 @@ class RobotPublishers:
         """Unregister all publishers."""
         for publisher in self.publishers:
             publisher.unregister()
-
-
-def _is_full(connection) -> bool:
-    """Return whether the next message drops the oldest one of a connection's queue."""
-    if not isinstance(connection, QueuedConnection):
-        return False
-    return 0 < connection._queue_size <= len(connection._queue)

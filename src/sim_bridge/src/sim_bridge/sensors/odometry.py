@@ -8,13 +8,18 @@ import numpy as np
 
 from planar import Pose2, Twist2
 from sim_bridge.config import SimulationSettings
-from sim_bridge.driving.drive import DriveProfile
+from sim_bridge.driving.drive import REST_SECONDS, DriveProfile
 from sim_bridge.sensors.base import Mounting, Schedule, SensorContext, every
 
 STREAM = 0
 # Variances of x, y, z [m^2], roll, pitch and yaw [rad^2]; large ones are not measured
 # (kobuki_gazebo_plugins).
 KOBUKI_VARIANCES = (0.1, 0.1, 1e6, 1e6, 1e6, 0.05)
+# Speed of a wheel [rad/s] below which it stands: a tick a second of a Kobuki's encoders, which have 2578.33 a
+# revolution.
+MAX_REST_SPEED = 2.0 * math.pi / 2578.33
+# Turn rate [rad/s], above the noise of the gyro, above which a base turns although its wheels stand.
+MAX_REST_RATE = 0.1
 
 
 @dataclass(frozen=True)
@@ -144,6 +149,8 @@ class DeadReckoning:
     * the gyro: scale and bias, drawn once, and white noise;
     * the odometry motion model (Probabilistic Robotics, table 5.6): alpha1 to alpha4.
 
+    While the wheels stand, the pose is held, so that the gyro's bias does not turn it.
+
     Args:
         drive: Geometry of the wheels.
         has_gyro: Whether the heading is from a gyro.
@@ -166,6 +173,7 @@ class DeadReckoning:
         self._motion_noise = _MotionNoise(settings, rng)
         self._rng = rng
         self._angles = (0.0, 0.0)
+        self._rest_seconds = 0.0
         self._pose = Pose2()
 
     def reset(self) -> None:
@@ -176,6 +184,7 @@ class DeadReckoning:
         """Integrate the motion of one period, and return the estimate."""
         left, right = motion.wheel_angles[: self._left_count], motion.wheel_angles[self._left_count :]
         sides = (sum(left) / len(left), sum(right) / len(right))
+        is_at_rest = self._is_at_rest(sides, motion.seconds)
         rolled = tuple(
             (angle - before) * radius for angle, before, radius in zip(sides, self._angles, self._radii)
         )
@@ -183,8 +192,16 @@ class DeadReckoning:
         distance = 0.5 * sum(rolled)
         slip = self._settings.wheel_slip * math.sqrt(abs(distance)) * self._rng.standard_normal()
         rate = self._measured_rate(motion, rolled)
+        if is_at_rest and abs(rate) < MAX_REST_RATE:
+            return Odometry(self._pose)
         self._pose = self._pose @ self._motion_noise.apply(_arc(distance + slip, rate * motion.seconds))
         return Odometry(self._pose, Twist2(distance / motion.seconds, rate))
+
+    def _is_at_rest(self, sides: Tuple[float, float], seconds: float) -> bool:
+        """Return whether the wheels, now at the angles ``sides`` [rad], have stood for REST_SECONDS."""
+        fastest = max(abs(angle - before) for angle, before in zip(sides, self._angles)) / seconds
+        self._rest_seconds = self._rest_seconds + seconds if fastest < MAX_REST_SPEED else 0.0
+        return self._rest_seconds >= REST_SECONDS
 
     def _measured_rate(self, motion: TrueMotion, rolled: Tuple[float, ...]) -> float:
         """Return the turn rate [rad/s] from the gyro, or from the rolled distances (left, right) [m]."""

@@ -12,10 +12,10 @@ from geometry_msgs.msg import Twist
 
 from planar import PlanarError, Twist2
 from planar_ros.lockstep.ticker import ProgressPublisher
-from planar_ros.node.flush import flush_and_close
 from planar_ros.node.parameters import read_settings
 from planar_ros.node.readiness import ReadinessMonitor
 from planar_ros.node.runner import run
+from planar_ros.node.topics import flush_and_close
 from supervision.interruption import ignore_further_signals, on_signals
 from teleop_lite.config import TeleopSettings
 from teleop_lite.key_script import KEYS, KeyScript, parse

@@ -20,7 +20,7 @@ ROSBAG = ("rosrun", "rosbag")
 
 
 class BagTool:
-    name, title, seconds, width = "bag", "Bag", 0.5, 440
+    name, title, seconds = "bag", "Bag", 0.5
 
     def __init__(self, context: ToolContext):
         self._context = context

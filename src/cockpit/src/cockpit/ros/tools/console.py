@@ -1,29 +1,23 @@
 """Console: log messages by node and level, and logger levels (rqt_console, rqt_logger_level)."""
 
-from typing import Optional
-
 from roscpp.srv import GetLoggers, SetLoggerLevel
 
 from cockpit.errors import CockpitError
-from cockpit.models.log import HEADS, LEVELS, LogBuffer, LogEntry, LogFilter, level_named
+from cockpit.models.log import HEADS, LEVELS, LogFilter, level_named
 from cockpit.models.tables import table
 from cockpit.ros.background import BackgroundCall
 from cockpit.ros.calls import call
-from cockpit.ros.graph import TopicFeed
 from cockpit.ros.tool import ToolContext
 
-AGGREGATED, ROSOUT, KIND = "/rosout_agg", "/rosout", "rosgraph_msgs/Log"
 NONE = "(none)"
 LOGGERS, SET_LEVEL = "/get_loggers", "/set_logger_level"
 
 
 class ConsoleTool:
-    name, title, seconds, width = "console", "Console", 0.5, 640
+    name, title, seconds = "console", "Console", 0.5
 
     def __init__(self, context: ToolContext):
         self._context = context
-        self._log = LogBuffer()
-        self._feed: Optional[TopicFeed] = None
         self._asking, self._setting = BackgroundCall(), BackgroundCall()
 
     def build(self) -> None:
@@ -31,7 +25,7 @@ class ConsoleTool:
         self._lowest = gui.add_dropdown("From level", tuple(LEVELS.values()), initial_value="Info")
         self._node = gui.add_text("Node", "", hint="part of a node's name")
         self._text = gui.add_text("Message", "", hint="part of a message")
-        gui.add_button("Clear", color="gray").on_click(guarded(lambda _: self._log.clear()))
+        gui.add_button("Clear", color="gray").on_click(guarded(lambda _: self._context.log.clear()))
         with gui.add_folder("Logger levels", expand_by_default=False):
             self._logging_node = gui.add_dropdown("Of node", (NONE,))
             self._logger = gui.add_dropdown("Logger", (NONE,))
@@ -41,13 +35,8 @@ class ConsoleTool:
         self._logging_node.on_update(guarded(self._ask_loggers))
 
     def update(self, now: float) -> None:
-        for message in self._subscribed().messages():
-            where = f"{message.file.rpartition('/')[2]}:{message.line} {message.function}".strip(": ")
-            self._log.add(
-                LogEntry(message.level, message.header.stamp.to_sec(), message.name, message.msg, where)
-            )
         wanted = LogFilter(level_named(self._lowest.value), self._node.value, self._text.value)
-        content = table(HEADS, self._log.rows(wanted))
+        content = table(HEADS, self._context.log.rows(wanted))
         if self._lines.content != content:
             self._lines.content = content
         services = self._context.graph.services()
@@ -58,19 +47,8 @@ class ConsoleTool:
             for do in background.results():
                 do()
 
-    def _subscribed(self) -> TopicFeed:
-        """Subscribe to /rosout_agg or, without rosout running, to /rosout."""
-        wanted = AGGREGATED if AGGREGATED in self._context.graph.publishers() else ROSOUT
-        if self._feed is not None and self._feed.topic != wanted:
-            self.pause()
-        if self._feed is None:
-            self._feed = self._context.graph.feed(wanted, KIND, all_of_them=True)
-        return self._feed
-
     def pause(self) -> None:
-        if self._feed is not None:
-            self._feed.close()
-            self._feed = None
+        """Do nothing: the cockpit collects the messages."""
 
     close = pause
 

@@ -21,7 +21,7 @@ USUAL_SECONDS = 5.0
 
 
 class FaultsTool:
-    name, title, seconds, width = "faults", "Faults", 0.5, 440
+    name, title, seconds = "faults", "Faults", 0.5
     # Outlives the window, as the faults do.
     _requested = RequestedFaults()
 

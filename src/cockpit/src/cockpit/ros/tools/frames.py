@@ -13,7 +13,7 @@ from cockpit.ros.transforms import TransformFeed
 
 
 class FramesTool:
-    name, title, seconds, width = "frames", "Frames (tf)", 0.5, 520
+    name, title, seconds = "frames", "Frames (tf)", 0.5
 
     def __init__(self, context: ToolContext):
         self._context = context

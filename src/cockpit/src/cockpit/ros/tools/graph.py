@@ -13,7 +13,7 @@ SIZE = re.compile(r'<svg width="(\d+)[^"]*" height="[^"]*"')
 
 
 class GraphTool:
-    name, title, seconds, width = "graph", "Graph", 1.0, 640
+    name, title, seconds = "graph", "Graph", 1.0
 
     def __init__(self, context: ToolContext):
         self._context = context

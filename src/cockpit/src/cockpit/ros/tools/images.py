@@ -12,7 +12,7 @@ NONE = "(none)"
 
 
 class ImagesTool:
-    name, title, seconds, width = "images", "Images", 0.1, 520
+    name, title, seconds = "images", "Images", 0.1
 
     def __init__(self, context: ToolContext):
         self._context = context

@@ -7,13 +7,14 @@ from cockpit.errors import CockpitError
 from cockpit.models.tables import table
 from cockpit.models.text import flat, value_text
 from cockpit.ros.tool import ToolContext
+from planar.config.bounded_yaml import load_yaml
 
 MOST_LISTED = 300
 LONGEST = 10_000
 
 
 class ParametersTool:
-    name, title, seconds, width = "parameters", "Parameters", 1.0, 560
+    name, title, seconds = "parameters", "Parameters", 1.0
 
     def __init__(self, context: ToolContext):
         self._context = context
@@ -60,8 +61,8 @@ class ParametersTool:
         if len(self._value.value) > LONGEST:
             raise CockpitError(f"longer than {LONGEST} characters")
         try:
-            value = yaml.safe_load(self._value.value)
-        except (yaml.YAMLError, RecursionError) as error:
+            value = load_yaml(self._value.value)
+        except (yaml.YAMLError, ValueError) as error:
             raise CockpitError(f"{name}: not YAML ({getattr(error, 'problem', error)})") from None
         if value is None:
             raise CockpitError(f"{name}: enter a value first")

@@ -4,18 +4,20 @@ from typing import Any, Dict, List, Tuple
 
 from cockpit.errors import CockpitError
 from cockpit.models.tables import table
-from cockpit.models.time_series import TimeSeries, expanded, number_at, numbers_in
+from cockpit.models.time_series import TimeSeries, expanded, number_at, numbers_in, suggested
 from cockpit.ros.graph import TopicFeed
 from cockpit.ros.message_yaml import message_class
 from cockpit.ros.tool import ToolContext
 
-NONE = "(none)"
+NONE, ALL = "(none)", "(all)"
+# Types of topics that are suggested before others.
+PREFERRED = ("nav_msgs/Odometry", "geometry_msgs/Twist", "std_msgs/Float32", "std_msgs/Float64")
 COLOURS = ("#1c7ed6", "#e8590c", "#2f9e44", "#ae3ec9", "#f59f00", "#0c8599", "#c92a2a", "#495057")
 SECONDS, LONGEST = 20.0, 300.0
 
 
 class PlotTool:
-    name, title, seconds, width = "plot", "Plot", 0.2, 560
+    name, title, seconds = "plot", "Plot", 0.2
 
     def __init__(self, context: ToolContext):
         self._context = context
@@ -24,11 +26,13 @@ class PlotTool:
         self._traces = TimeSeries(SECONDS)
         self._chart: Any = None
         self._awaited = [name for word in context.words for name in expanded(word)]
+        # Paths of the numbers of each message type.
+        self._numbers: Dict[str, List[str]] = {}
 
     def build(self) -> None:
         gui, guarded = self._context.gui, self._context.guarded
-        self._topic = gui.add_dropdown("Topic", (NONE,))
-        self._field = gui.add_dropdown("Number", (NONE,))
+        self._topic = gui.add_dropdown("Topic", (ALL,), hint="topics with numbers")
+        self._number = gui.add_dropdown("Number", (NONE,), hint="type a part of its name to find it")
         self._typed = gui.add_text("or type it", "", hint="/odom/twist/twist/linear/x, /scan/ranges[3]")
         gui.add_button("Add").on_click(guarded(self._add))
         self._shown = gui.add_dropdown("Shown", (NONE,))
@@ -36,12 +40,10 @@ class PlotTool:
         self._span = gui.add_number("Seconds", SECONDS, min=1.0, max=LONGEST, step=1.0)
         self._space = gui.add_folder("Over the last seconds")
         self._values = gui.add_html("")
-        self._topic.on_update(guarded(self._offer_fields))
+        self._topic.on_update(guarded(lambda _: self._offer_numbers()))
 
     def update(self, now: float) -> None:
-        topics = (NONE, *sorted(self._context.graph.topics()))
-        if self._topic.options != topics:
-            self._topic.options = topics
+        self._offer_numbers()
         self._add_awaited()
         self._subscribe()
         self._read()
@@ -59,16 +61,29 @@ class PlotTool:
 
     close = pause
 
-    def _offer_fields(self, _event: Any) -> None:
-        kind = self._context.graph.topics().get(self._topic.value)
-        found = [] if kind is None else numbers_in(message_class(kind)())
-        self._field.options = tuple(found) or (NONE,)
+    def _offer_numbers(self) -> None:
+        """Offer the topics with numbers, and the numbers of the selected topic or the first ones of all."""
+        kinds = self._context.graph.topics()
+        topics = sorted(kinds, key=lambda topic: (kinds[topic] not in PREFERRED, topic))
+        found = {topic: self._numbers_of(kinds[topic]) for topic in topics if self._numbers_of(kinds[topic])}
+        _offer(self._topic, (ALL, *sorted(found)))
+        chosen = self._topic.value
+        paths = suggested(found) if chosen == ALL else [(chosen, path) for path in found.get(chosen, ())]
+        _offer(self._number, tuple(_name(*each) for each in paths) or (NONE,))
+
+    def _numbers_of(self, kind: str) -> List[str]:
+        if kind not in self._numbers:
+            try:
+                self._numbers[kind] = numbers_in(message_class(kind)())
+            except CockpitError:  # of a type that is not installed
+                self._numbers[kind] = []
+        return self._numbers[kind]
 
     def _add(self, _event: Any) -> None:
-        found = [self._split(name) for name in expanded(self._typed.value.strip())]
-        found = found or [(self._topic.value, self._field.value)]
-        if NONE in found[0]:
-            raise CockpitError("choose a topic and a number in it first")
+        names = expanded(self._typed.value.strip()) or [self._number.value]
+        if NONE in names:
+            raise CockpitError("no topic has numbers yet")
+        found = [self._split(name) for name in names]
         self._paths.update({_name(*each): each for each in found})
         self._typed.value = ""
         self._rebuild()
@@ -126,6 +141,11 @@ class PlotTool:
             for at, message, _ in feed.stamped_messages():
                 for name, path in wanted:
                     self._traces.add(name, at, number_at(message, path))
+
+
+def _offer(dropdown: Any, options: Tuple[str, ...]) -> None:
+    if dropdown.options != options:
+        dropdown.options = options
 
 
 def _name(topic: str, path: str) -> str:

@@ -15,7 +15,7 @@ FASTEST = 20.0
 
 
 class PublisherTool:
-    name, title, seconds, width = "publisher", "Publisher", 0.05, 440
+    name, title, seconds = "publisher", "Publisher", 0.05
 
     def __init__(self, context: ToolContext):
         self._context = context

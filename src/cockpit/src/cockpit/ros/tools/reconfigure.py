@@ -24,7 +24,7 @@ LISTS = {
 
 
 class ReconfigureTool:
-    name, title, seconds, width = "reconfigure", "Reconfigure", 0.2, 480
+    name, title, seconds = "reconfigure", "Reconfigure", 0.2
 
     def __init__(self, context: ToolContext):
         self._context = context

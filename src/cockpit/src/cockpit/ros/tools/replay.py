@@ -20,7 +20,7 @@ STEP_SECONDS = 0.1
 
 
 class ReplayTool:
-    name, title, seconds, width = "replay", "Replay", 0.1, 420
+    name, title, seconds = "replay", "Replay", 0.1
 
     def __init__(self, context: ToolContext):
         self._context = context

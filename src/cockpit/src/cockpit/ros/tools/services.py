@@ -18,7 +18,7 @@ COMMON = ("/get_loggers", "/set_logger_level", "/tf2_frames")
 
 
 class ServicesTool:
-    name, title, seconds, width = "services", "Services", 0.5, 520
+    name, title, seconds = "services", "Services", 0.5
 
     def __init__(self, context: ToolContext):
         self._context = context

@@ -13,7 +13,7 @@ NONE = "(none)"
 
 
 class TopicsTool:
-    name, title, seconds, width = "topics", "Topics", 0.5, 620
+    name, title, seconds = "topics", "Topics", 0.5
 
     def __init__(self, context: ToolContext):
         self._context = context

@@ -4,8 +4,8 @@ import os
 import sys
 
 import rosgraph
-import rospy
 
+from rospy_transport.node import reload_remappings
 from rtabmap_ros.arguments import slam_lite_arguments
 
 RTABMAPVIZ_NOTICE = (
@@ -21,7 +21,7 @@ def rtabmap() -> None:
 
     print(RTABMAPVIZ_NOTICE, file=sys.stderr)
     sys.argv[1:] = slam_lite_arguments(sys.argv[1:], _parameter)
-    rospy.names.reload_mappings(sys.argv)  # rospy read the original ones when it was imported
+    reload_remappings()
     make_map()
 
 

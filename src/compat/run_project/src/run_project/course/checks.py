@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from typing import List, Optional
 
-from run_project.judging.verdict import ProjectVerdict
+from evaluation.verdict import Verdict
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class CheckResults:
         self.checks.append(Check(passed, description))
         return description
 
-    def verdict(self, failure: Optional[str] = None) -> ProjectVerdict:
+    def verdict(self, failure: Optional[str] = None) -> Verdict:
         """Success if there was a check and all passed.
 
         Args:
@@ -34,7 +34,7 @@ class CheckResults:
         passed = sum(check.passed for check in self.checks)
         summary = "; ".join(check.description for check in self.checks) or "nothing checked"
         if failure:
-            return ProjectVerdict(False, f"{failure}; {summary}")
-        return ProjectVerdict(
+            return Verdict(False, f"{failure}; {summary}")
+        return Verdict(
             0 < passed == len(self.checks), f"{passed} of {len(self.checks)} checks passed: {summary}"
         )

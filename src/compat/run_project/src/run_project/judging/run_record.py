@@ -2,7 +2,20 @@
 
 import math
 from dataclasses import dataclass, field
-from typing import Any, Dict, List, Optional, Set, Tuple
+from typing import Any, Callable, Dict, List, Optional, Set, Tuple
+
+from evaluation.event_stream import EventStream
+from evaluation.events import (
+    DELETE_ALL,
+    SHOW,
+    BodiesTouched,
+    ClockAdvanced,
+    GoalEnded,
+    GoalRequested,
+    GoalStatusUpdated,
+    MarkerUpdated,
+    TruthUpdated,
+)
 
 STATUS_NAMES = (
     "pending",
@@ -70,88 +83,41 @@ class _PlaceVisit:
 
 @dataclass
 class ProjectRunRecord:
-    """Goals, markers, collisions and distance of a run, by simulated time.
+    """Goals, markers, collisions and distance of a run, by simulated time. It consumes run events.
 
-    Methods that update it return a description of the event, or None if nothing new happened. A marker event
-    that repeats is not new until the next goal: some projects republish or blink markers forever.
+    A marker event that repeats is not logged until the next goal: some projects republish or blink markers
+    forever.
 
     Attributes:
+        log: Called with each event that is new, in words.
         goals: Goal id -> goal, in the order of sending.
         markers: Descriptions of marker events.
         collisions: Name of the body at each contact.
         distance_driven: Path length of the robot without teleports [m].
+        simulated_time: Current time [s].
         last_event_time: Simulated time of the last goal or marker event [s].
     """
 
+    log: Callable[[str], None]
     goals: Dict[str, ProjectGoal] = field(default_factory=dict)
     markers: List[str] = field(default_factory=list)
     collisions: List[str] = field(default_factory=list)
     distance_driven: float = 0.0
+    simulated_time: float = 0.0
     last_event_time: float = 0.0
     _position: Optional[Tuple[float, float]] = None
     _shown: Dict[Tuple[str, int], Tuple[float, float]] = field(default_factory=dict)
     _reported_events: Set[Tuple[bool, int, int]] = field(default_factory=set)
 
-    def add_goal(self, now: float, name: str, place: Tuple[float, float]) -> None:
-        """Add a goal that was sent."""
-        self._goal(now, name).place = place
-
-    def update_status(self, now: float, name: str, number: int, text: str) -> Optional[str]:
-        """Update a goal by its actionlib status."""
-        goal = self._goal(now, name)
-        status = STATUS_NAMES[number] if 0 <= number < len(STATUS_NAMES) else "lost"
-        if status == goal.status or goal.status in FINAL_STATUSES:
-            return None
-        goal.status, goal.text = status, text
-        self._on_goal_event(now)
-        if status in FINAL_STATUSES:
-            goal.ended = now
-            if goal.place and self._position:
-                goal.distance = round(math.dist(goal.place, self._position), 3)
-        detail = f": {text}" if text and status not in ("active", "succeeded") else ""
-        return f"goal {list(self.goals).index(name) + 1}{at_position(goal.place)} {status}{detail}"
-
-    def update_marker(
-        self, now: float, marker: Tuple[str, int], place: Optional[Tuple[float, float]]
-    ) -> Optional[str]:
-        """Update a marker, identified by namespace and id: shown at x, y [m], or hidden (None)."""
-        before = self._shown.get(marker)
-        if place is None:
-            if before is None:
-                return None
-            del self._shown[marker]
-            change = "hidden"
-        elif before is not None and math.dist(before, place) < SAME_PLACE_DISTANCE:
-            return None
-        else:
-            self._shown[marker] = place
-            change = f"shown{at_position(place)}"
-        x, y = place or before or (0.0, 0.0)
-        event = (place is None, round(x / SAME_PLACE_DISTANCE), round(y / SAME_PLACE_DISTANCE))
-        if event in self._reported_events:
-            return None
-        self._reported_events.add(event)
-        self.last_event_time = now
-        self.markers.append(change)
-        return f"marker {change}"
-
-    def delete_all_markers(self, now: float) -> Optional[str]:
-        """Update all markers as hidden."""
-        events = [self.update_marker(now, marker, None) for marker in list(self._shown)]
-        return events[0] if events else None
-
-    def update_position(self, position: Tuple[float, float]) -> None:
-        """Update the true position of the robot [m]; teleports do not count as driven."""
-        if self._position is not None:
-            step = math.dist(self._position, position)
-            self.distance_driven += step if step < JUMP_DISTANCE else 0.0
-        self._position = position
-
-    def add_collision(self, name: str) -> Optional[str]:
-        """Add a contact of the robot with a body; only the first with each body is reported."""
-        is_new = name not in self.collisions
-        self.collisions.append(name)
-        return f"collision with {name}" if is_new else None
+    def attach(self, events: EventStream) -> None:
+        """Subscribe to events."""
+        events.subscribe(ClockAdvanced, self._on_clock)
+        events.subscribe(TruthUpdated, self._on_truth)
+        events.subscribe(BodiesTouched, self._on_contact)
+        events.subscribe(GoalRequested, self._on_goal)
+        events.subscribe(GoalStatusUpdated, self._on_status)
+        events.subscribe(GoalEnded, self._on_status)
+        events.subscribe(MarkerUpdated, self._on_marker)
 
     @property
     def all_goals_ended(self) -> bool:
@@ -188,14 +154,80 @@ class ProjectRunRecord:
             "collisions": self.collisions,
         }
 
-    def _goal(self, now: float, name: str) -> ProjectGoal:
+    def _on_clock(self, event: ClockAdvanced) -> None:
+        self.simulated_time = event.stamp
+
+    def _on_truth(self, event: TruthUpdated) -> None:
+        """Update the true position; teleports do not count as driven."""
+        position = (event.pose.x, event.pose.y)
+        if self._position is not None:
+            step = math.dist(self._position, position)
+            self.distance_driven += step if step < JUMP_DISTANCE else 0.0
+        self._position = position
+
+    def _on_contact(self, event: BodiesTouched) -> None:
+        """Add contacts; only the first with each body is logged."""
+        for name in event.names:
+            is_new = name not in self.collisions
+            self.collisions.append(name)
+            if is_new:
+                self.log(f"collision with {name}")
+
+    def _on_goal(self, event: GoalRequested) -> None:
+        self._goal(event.identity).place = (event.pose.x, event.pose.y)
+
+    def _on_status(self, event: GoalStatusUpdated) -> None:
+        goal = self._goal(event.identity)
+        status = STATUS_NAMES[event.status] if 0 <= event.status < len(STATUS_NAMES) else "lost"
+        if status == goal.status or goal.status in FINAL_STATUSES:
+            return
+        goal.status, goal.text = status, event.text
+        self._on_goal_change()
+        if status in FINAL_STATUSES:
+            goal.ended = self.simulated_time
+            if goal.place and self._position:
+                goal.distance = round(math.dist(goal.place, self._position), 3)
+        detail = f": {event.text}" if event.text and status not in ("active", "succeeded") else ""
+        number = list(self.goals).index(event.identity) + 1
+        self.log(f"goal {number}{at_position(goal.place)} {status}{detail}")
+
+    def _on_marker(self, event: MarkerUpdated) -> None:
+        if event.action == DELETE_ALL:
+            for marker in list(self._shown):
+                self._update_marker(marker, None)
+            return
+        is_shown = event.action == SHOW and event.is_visible
+        self._update_marker((event.name, event.number), event.position[:2] if is_shown else None)
+
+    def _update_marker(self, marker: Tuple[str, int], place: Optional[Tuple[float, float]]) -> None:
+        """Update a marker, identified by namespace and id: shown at x, y [m], or hidden (None)."""
+        before = self._shown.get(marker)
+        if place is None:
+            if before is None:
+                return
+            del self._shown[marker]
+            change = "hidden"
+        elif before is not None and math.dist(before, place) < SAME_PLACE_DISTANCE:
+            return
+        else:
+            self._shown[marker] = place
+            change = f"shown{at_position(place)}"
+        x, y = place or before or (0.0, 0.0)
+        change_and_cell = (place is None, round(x / SAME_PLACE_DISTANCE), round(y / SAME_PLACE_DISTANCE))
+        if change_and_cell not in self._reported_events:
+            self._reported_events.add(change_and_cell)
+            self.last_event_time = self.simulated_time
+            self.markers.append(change)
+            self.log(f"marker {change}")
+
+    def _goal(self, name: str) -> ProjectGoal:
         if name not in self.goals:
-            self.goals[name] = ProjectGoal(sent=now)
-            self._on_goal_event(now)
+            self.goals[name] = ProjectGoal(sent=self.simulated_time)
+            self._on_goal_change()
         return self.goals[name]
 
-    def _on_goal_event(self, now: float) -> None:
-        self.last_event_time = now
+    def _on_goal_change(self) -> None:
+        self.last_event_time = self.simulated_time
         self._reported_events.clear()
 
 

@@ -1,19 +1,11 @@
 """Judges the record of a run: did the project reach its goals, or show its marker?"""
 
-from dataclasses import dataclass
 from typing import List, Optional, Sequence
 
+from evaluation.verdict import Verdict
 from run_project.judging.run_record import ProjectGoal, ProjectRunRecord, at_position, is_same_place
 
 MAX_REPORTED_EVENTS = 8
-
-
-@dataclass(frozen=True)
-class ProjectVerdict:
-    """Whether a run of a project succeeded, and why."""
-
-    success: bool
-    reason: str
 
 
 def judge(
@@ -21,7 +13,7 @@ def judge(
     failure: Optional[str] = None,
     requires_goals: bool = False,
     expected: Optional[Sequence[str]] = None,
-) -> ProjectVerdict:
+) -> Verdict:
     """Judge a run: success if all goals were reached or, without goals, if the project showed a marker.
 
     A failed goal that was sent again and reached does not count, nor do goals after two rounds of the same
@@ -41,19 +33,19 @@ def judge(
         if not goal.is_reached and not _was_reached_later(goal, goals[number:])
     ]
     if failure:
-        return ProjectVerdict(False, f"{failure}; {reached} of {len(goals)} goals reached")
+        return Verdict(False, f"{failure}; {reached} of {len(goals)} goals reached")
     if expected is not None:
         endings = [goal.status for goal in goals]
         is_expected = endings == list(expected)
         comparison = "as expected" if is_expected else f"instead of {', '.join(expected)}"
         summary = f"{', '.join(endings) or 'none'}, {comparison}"
-        return ProjectVerdict(is_expected, f"{reached} of {len(goals)} goals reached; {summary}")
+        return Verdict(is_expected, f"{reached} of {len(goals)} goals reached; {summary}")
     if failed:
-        return ProjectVerdict(False, f"{reached} of {len(goals)} goals reached; {'; '.join(failed)}")
+        return Verdict(False, f"{reached} of {len(goals)} goals reached; {'; '.join(failed)}")
     summary = f"markers: {', '.join(_shortened(record.markers))}" if record.markers else "no marker shown"
     if goals:
-        return ProjectVerdict(True, f"{reached} of {len(goals)} goals reached; {summary}")
-    return ProjectVerdict(bool(record.markers) and not requires_goals, f"no goal sent; {summary}")
+        return Verdict(True, f"{reached} of {len(goals)} goals reached; {summary}")
+    return Verdict(bool(record.markers) and not requires_goals, f"no goal sent; {summary}")
 
 
 def _shortened(events: List[str]) -> List[str]:

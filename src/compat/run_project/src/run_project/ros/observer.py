@@ -1,19 +1,25 @@
-"""Observer of a project: records goals, markers, contacts and the true position of the robot."""
+"""Observer of a project: its topics as run events, wherever the project publishes them."""
 
 import struct
-import threading
-from functools import partial
-from typing import Callable, Dict, List, Optional, Set
+from typing import Callable, Iterator, Set
 
 import rosgraph
 import rospy
-from actionlib_msgs.msg import GoalStatusArray
-from move_base_msgs.msg import MoveBaseActionGoal, MoveBaseActionResult
-from nav_msgs.msg import Odometry
-from rosgraph_msgs.msg import Clock
-from std_msgs.msg import String
 from visualization_msgs.msg import Marker, MarkerArray
 
+from evaluation.event_stream import EventStream
+from evaluation.events import ClockAdvanced, MarkerUpdated
+from evaluation.ros.message_events import Reception, marker
+from evaluation.ros.run_topics import (
+    CLOCK,
+    CONTACTS,
+    GOAL_REQUESTS,
+    GOAL_RESULTS,
+    GOAL_STATUSES,
+    TRUTH,
+    EventTopic,
+    RunTopics,
+)
 from run_project.judging.run_record import ProjectRunRecord
 
 # Size of seq and stamp at the start of a serialized header: they differ between otherwise equal messages.
@@ -22,35 +28,38 @@ CHANGING_BYTES = struct.calcsize("<III")
 MARKERS = "/visualization_marker"
 # Nodes whose markers and goals are not those of the project.
 ROBOT_NODES = frozenset(("/amcl", "/explore", "/gazebo", "/map_server", "/move_base", "/slam_gmapping"))
+QUEUE_SIZE = 100
 
 
 class Observer:
-    """Fills the record of a run from the topics of a ROS master.
+    """Publishes the topics of a ROS master as run events, and records them.
+
+    Args:
+        log_event: Called with each event that is new, in words.
 
     Attributes:
+        events: The events.
         record: Goals, markers, contacts and distance of the run.
-        simulated_time: Latest time on ``/clock`` [s].
         has_goal_clients: Whether a node of the project can send goals.
     """
 
     def __init__(self, log_event: Callable[[str], None]):
-        self.record = ProjectRunRecord()
-        self.simulated_time = 0.0
+        self.events = EventStream(on_error=lambda text: rospy.logerr("%s", text))
+        self.record = ProjectRunRecord(lambda text: log_event(f"{self.simulated_time:7.1f} s  {text}"))
+        self.record.attach(self.events)
         self.has_goal_clients = False
-        self._log_event = log_event
-        self._lock = threading.Lock()
-        self._latest: Dict[str, bytes] = {}
+        self._topics = RunTopics(self.events, timekeeper=ClockAdvanced)
         self._seen: Set[str] = set()
         self._goal_topics: Set[str] = set()
-        self._subscribers: List[rospy.Subscriber] = []
+
+    @property
+    def simulated_time(self) -> float:
+        """Latest time on ``/clock`` [s]."""
+        return self.record.simulated_time
 
     def start(self) -> None:
         """Subscribe to the topics of every run. This process must be a ROS node."""
-        self._subscribers += [
-            rospy.Subscriber("/clock", Clock, self._on_clock, queue_size=1),
-            rospy.Subscriber("/contacts", String, self._on_contacts, queue_size=50),
-            rospy.Subscriber("/base_pose_ground_truth", Odometry, self._on_ground_truth, queue_size=50),
-        ]
+        self._topics.open((CLOCK, CONTACTS, TRUTH))
         # Before the project starts: some nodes publish once, as soon as they have a subscriber.
         self._subscribe_markers(MARKERS)
         self._subscribe_goals("/move_base/goal")
@@ -83,73 +92,35 @@ class Observer:
         goal = f", goal {len(record.goals)} {list(record.goals.values())[-1].status}" if record.goals else ""
         return f"{self.simulated_time:7.1f} s  {record.distance_driven:.1f} m driven{goal}"
 
-    def _subscribe_goals(self, topic):
+    def _subscribe_goals(self, topic: str) -> None:
         self._goal_topics.add(topic)
-        self._subscribe(topic, MoveBaseActionGoal, self._on_goal)
-        self._subscribe(topic.rsplit("/", 1)[0] + "/status", GoalStatusArray, self._on_status)
+        self._subscribe(topic, GOAL_REQUESTS)
+        self._subscribe(topic.rsplit("/", 1)[0] + "/status", GOAL_STATUSES)
 
-    def _subscribe_results(self, topic):
-        self._subscribe(topic, MoveBaseActionResult, self._on_result)
+    def _subscribe_results(self, topic: str) -> None:
+        self._subscribe(topic, GOAL_RESULTS)
 
-    def _subscribe_markers(self, topic):
-        self._subscribe(topic, rospy.AnyMsg, lambda raw: self._on_marker_message(topic, raw))
+    def _subscribe_markers(self, topic: str) -> None:
+        self._subscribe(topic, EventTopic(topic, rospy.AnyMsg, MarkerReader(), (MarkerUpdated,)))
 
-    def _subscribe(self, topic, kind, callback):
-        self._subscribers.append(rospy.Subscriber(topic, kind, callback, queue_size=100, tcp_nodelay=True))
+    def _subscribe(self, topic: str, like: EventTopic) -> None:
+        self._topics.subscribe(like._replace(name=topic, queue_size=QUEUE_SIZE))
 
-    def _on_clock(self, message):
-        self.simulated_time = message.clock.to_sec()
 
-    def _on_goal(self, message):
-        position = message.goal.target_pose.pose.position
-        self._update(
-            lambda: self.record.add_goal(self.simulated_time, message.goal_id.id, (position.x, position.y))
-        )
+class MarkerReader:
+    """Reads the markers of a topic.
 
-    def _on_status(self, message):
-        for status in message.status_list:
-            self._update_status(status)
+    Messages equal to the last one are skipped: some projects publish a marker a thousand times a second.
+    """
 
-    def _on_result(self, message):
-        self._update_status(message.status)
+    def __init__(self) -> None:
+        self._latest = b""
 
-    def _update_status(self, status):
-        name, number, text = status.goal_id.id, status.status, status.text
-        self._update(lambda: self.record.update_status(self.simulated_time, name, number, text))
-
-    def _on_marker_message(self, topic: str, raw: rospy.AnyMsg):
-        """Skip messages equal to the last one: some projects publish a marker a thousand times a second."""
+    def __call__(self, raw: rospy.AnyMsg, received: Reception) -> Iterator[MarkerUpdated]:
         data, is_array = raw._buff, raw._connection_header["type"].endswith("Array")
         content = data if is_array else data[CHANGING_BYTES:]
-        if self._latest.get(topic) == content:
-            return
-        self._latest[topic] = content
-        for marker in MarkerArray().deserialize(data).markers if is_array else [Marker().deserialize(data)]:
-            self._update(partial(self._update_marker, marker))
-
-    def _update_marker(self, marker: Marker) -> Optional[str]:
-        now = self.simulated_time
-        if marker.action == Marker.DELETEALL:
-            return self.record.delete_all_markers(now)
-        scale = marker.scale
-        is_visible = marker.color.a > 0.0 or bool(marker.colors)
-        is_shown = marker.action == Marker.ADD and is_visible and max(scale.x, scale.y, scale.z) > 0.0
-        position = marker.pose.position
-        return self.record.update_marker(
-            now, (marker.ns, marker.id), (position.x, position.y) if is_shown else None
-        )
-
-    def _on_ground_truth(self, message):
-        position = message.pose.pose.position
-        with self._lock:
-            self.record.update_position((position.x, position.y))
-
-    def _on_contacts(self, message):
-        for name in message.data.splitlines():
-            self._update(partial(self.record.add_collision, name))
-
-    def _update(self, update: Callable[[], Optional[str]]):
-        with self._lock:
-            event = update()
-        if event:
-            self._log_event(f"{self.simulated_time:7.1f} s  {event}")
+        if content != self._latest:
+            self._latest = content
+            markers = MarkerArray().deserialize(data).markers if is_array else [Marker().deserialize(data)]
+            for each in markers:
+                yield marker(each, received)

@@ -97,6 +97,8 @@ class ProjectRun:
             for name, value in self._parameters.items():
                 rospy.set_param(name, value)
             rospy.init_node("run_project", anonymous=True, disable_signals=True, log_level=rospy.ERROR)
+            if self.user is not None:
+                self.user.attach(self.observer.events)
             self.observer.start()
             if self.user is not None:
                 self.user.start()

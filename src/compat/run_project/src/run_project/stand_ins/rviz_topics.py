@@ -4,6 +4,8 @@ from typing import Iterator, Set
 
 import yaml
 
+from planar.config.bounded_yaml import load_yaml
+
 # Not subscribed: images and point clouds, because rendering them is expensive, and markers, because the
 # observer must be their first subscriber: some nodes publish a marker once, as soon as they have one.
 EXCLUDED_DISPLAYS = (
@@ -26,8 +28,8 @@ def displayed_topics(text: str) -> Set[str]:
         text: Contents of an ``.rviz`` file; an invalid one has no topics.
     """
     try:
-        config = yaml.safe_load(text.replace("\t", "  "))
-    except yaml.YAMLError:
+        config = load_yaml(text.replace("\t", "  "))
+    except (yaml.YAMLError, ValueError):
         return set()
     manager = config.get("Visualization Manager") if isinstance(config, dict) else None
     displays = manager.get("Displays") if isinstance(manager, dict) else None

@@ -8,8 +8,8 @@ from visualization_msgs.msg import InteractiveMarker, InteractiveMarkerControl, 
 
 from planar import PlanarError, Pose2
 from planar_ros.messages.conversion import pose2_from_msg, pose2_to_msg
-from planar_ros.node.flush import publish_on_shutdown
 from planar_ros.node.runner import run
+from planar_ros.node.topics import publish_on_shutdown
 
 NAME, MARKER = "turtlebot3_marker_server", "turtlebot3_marker"
 # The official topic, which the launch file renames to ``cmd_vel``.

@@ -6,8 +6,8 @@ import rospy
 from geometry_msgs.msg import Twist
 from sensor_msgs.msg import LaserScan
 
-from planar_ros.node.flush import publish_on_shutdown
 from planar_ros.node.runner import run
+from planar_ros.node.topics import publish_on_shutdown
 
 # Speed [m/s], and distance at which to stop, including the lidar's error [m].
 SPEED, SAFE_DISTANCE = 0.22, 0.25

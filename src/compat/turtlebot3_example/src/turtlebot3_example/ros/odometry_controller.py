@@ -9,7 +9,7 @@ from nav_msgs.msg import Odometry
 
 from planar import Pose2, Twist2
 from planar_ros.messages.conversion import pose2_from_msg
-from planar_ros.node.flush import publish_on_shutdown
+from planar_ros.node.topics import publish_on_shutdown
 from turtlebot3_example.go_to_pose import velocity_to
 
 RATE, ODOMETRY_SECONDS, POLL_SECONDS = 15.0, 60.0, 0.02

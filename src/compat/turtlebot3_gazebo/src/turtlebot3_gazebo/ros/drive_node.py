@@ -9,8 +9,8 @@ from sensor_msgs.msg import LaserScan
 
 from planar import Pose2
 from planar_ros.messages.conversion import pose2_from_msg
-from planar_ros.node.flush import publish_on_shutdown
 from planar_ros.node.runner import run
+from planar_ros.node.topics import publish_on_shutdown
 from turtlebot3_gazebo.wandering import Wanderer
 
 SIDE = math.radians(30.0)

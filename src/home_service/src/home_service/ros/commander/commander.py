@@ -32,6 +32,7 @@ from planar_ros.messages.conversion import pose2_to_msg
 from planar_ros.messages.transforms import Transforms
 from planar_ros.node.runner import init_node, shut_down_on_signals
 from planar_ros.node.topics import has_all_subscribers
+from rospy_transport.node import is_initialized, is_wall_clock
 
 POLL_SECONDS = 0.05
 # Variances of an initial pose, as set by rviz [m^2, m^2, rad^2].
@@ -61,7 +62,7 @@ class Commander:
     """
 
     def __init__(self, name: str = "commander", frame_id: str = "map", base_frame_id: str = "base_footprint"):
-        if not rospy.core.is_initialized():
+        if not is_initialized():
             shut_down_on_signals(goes_on=True)
             init_node(name, anonymous=True)
         self.waiting_for: List[str] = []
@@ -265,4 +266,4 @@ class Commander:
 
 def _has_right_clock() -> bool:
     """Whether rospy, which decides once at its start, uses the clock of the other nodes."""
-    return not (rospy.rostime.is_wallclock() and rospy.get_param("/use_sim_time", False))
+    return not (is_wall_clock() and rospy.get_param("/use_sim_time", False))

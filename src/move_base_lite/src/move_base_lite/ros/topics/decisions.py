@@ -14,7 +14,7 @@ from move_base_lite.ros.topics.dwa_clouds import DwaCloudTopics
 from move_base_lite.ros.topics.plan_messages import path_msg, plan_msg, pose_msg, trajectory_msg
 from move_base_lite.ros.topics.status_messages import outcome_msg, progress_msg
 from planar import Pose2, Twist2
-from planar_ros.node.flush import flush_and_close
+from planar_ros.node.topics import flush_and_close
 
 FEEDBACK_PERIOD = rospy.Duration(0.2)
 # Namespace in which rviz configurations expect the plans of any other local planner.

@@ -12,10 +12,10 @@ from tf2_msgs.msg import TFMessage
 from planar import PlanarError, SettingsError
 from planar_ros.messages.conversion import frame_name
 from planar_ros.messages.validation import WARN_SECONDS, MessageError, is_stamp, subscribe
-from planar_ros.node.clock import sleep_until
 from planar_ros.node.parameters import read_settings
 from planar_ros.node.runner import run
 from planar_ros.node.topics import remap_once
+from rospy_transport.node import sleep_until
 from sim_bridge.config import RelaySettings
 from sim_bridge.faults import load_faults
 from sim_bridge.faults.injection import apply_faults

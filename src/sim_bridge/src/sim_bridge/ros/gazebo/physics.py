@@ -11,7 +11,7 @@ from std_srvs.srv import Empty, EmptyResponse
 
 from planar import PlanarError
 from planar.config.parameters import DynamicParameter
-from planar_ros.node.reconfigure import ReconfigureServer
+from planar_ros.node.parameters import ReconfigureServer
 from sim_bridge.config import MAX_PHYSICS_RATE
 from sim_bridge.errors import WorldError
 from sim_bridge.ros.gazebo.server import NAMESPACE, GazeboServer

@@ -4,6 +4,7 @@ from typing import Callable, Optional, TypeVar
 
 import numpy as np
 import rospy
+from rosgraph.names import ns_join
 
 from sim_bridge.errors import UnknownEntityError
 from sim_bridge.geometry.pose3 import inverse
@@ -37,7 +38,7 @@ class GazeboServer:
             kind: Type of the service.
             answer: Returns the response to a request.
         """
-        full_name = rospy.names.ns_join(NAMESPACE, name)
+        full_name = ns_join(NAMESPACE, name)
         rospy.Service(full_name, kind, lambda request: self.between_steps(lambda: answer(request)))
 
     def serve_in_thread(self, name: str, kind, answer: Callable) -> None:
@@ -48,7 +49,7 @@ class GazeboServer:
             kind: Type of the service.
             answer: Returns the response to a request; must access the scene by ``between_steps``.
         """
-        rospy.Service(rospy.names.ns_join(NAMESPACE, name), kind, answer)
+        rospy.Service(ns_join(NAMESPACE, name), kind, answer)
 
     def between_steps(self, function: Callable[[], T]) -> T:
         """Run a function between two steps and return its result."""

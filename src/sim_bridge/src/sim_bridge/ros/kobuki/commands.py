@@ -2,6 +2,7 @@
 
 import rospy
 from kobuki_msgs.msg import Led, MotorPower, Sound
+from rosgraph.names import ns_join
 from std_msgs.msg import Empty
 
 from sim_bridge.ros.call_queue import CallQueue
@@ -23,7 +24,7 @@ class KobukiCommands:
         self._scene = scene
         self._name = name
         self._calls = calls
-        self._where = rospy.names.ns_join(namespace, NAMESPACE)
+        self._where = ns_join(namespace, NAMESPACE)
         self._subscribers = [
             self._subscriber("motor_power", MotorPower, self._on_motor_power),
             self._subscriber("reset_odometry", Empty, self._on_reset_odometry),
@@ -37,7 +38,7 @@ class KobukiCommands:
             subscriber.unregister()
 
     def _subscriber(self, topic, kind, callback):
-        name = rospy.names.ns_join(self._where, f"commands/{topic}")
+        name = ns_join(self._where, f"commands/{topic}")
         return rospy.Subscriber(name, kind, callback, queue_size=10)
 
     def _on_motor_power(self, message):

@@ -7,7 +7,7 @@ from typing import Collection, Dict, FrozenSet, List, Set
 import rospy
 
 from planar_ros.lockstep.client import observers
-from planar_ros.lockstep.connection_check import ConnectionCheck
+from sim_bridge.ros.timing.connection_check import ConnectionCheck
 
 # Names of the observers to wait for, separated by spaces; a launch file knows them before they start.
 EXPECTED_OBSERVERS_PARAMETER = "/simulation/expected_observers"

@@ -15,9 +15,16 @@ from std_msgs.msg import Header, String
 from planar_ros.lockstep import transport
 from planar_ros.lockstep.client import STATIC_PUBLISHERS_PARAMETER, WAIT_FOR_PARAMETER
 from planar_ros.lockstep.message_buffer import MessageBuffer
-from planar_ros.lockstep.service_calls import CallMonitor, delay_service_replies
-from planar_ros.lockstep.transport import ANSWER_TOPIC, INSTANT_TOPIC, LockstepConnection
+from planar_ros.lockstep.transport import (
+    ANSWER_TOPIC,
+    INSTANT_TOPIC,
+    CallMonitor,
+    LockstepConnection,
+    delaying_calls,
+)
 from planar_ros.messages.conversion import time_of
+from rospy_transport.connections import connected_publishers
+from rospy_transport.replacements import install
 from sim_bridge.lock_step import LockStepCoordinator
 from sim_bridge.ros.call_queue import CallQueue
 from sim_bridge.ros.timing.connection_monitor import ConnectionMonitor
@@ -49,7 +56,7 @@ class LockStep:
         rospy.set_param(STATIC_PUBLISHERS_PARAMETER, static)
         self._coordinator = LockStepCoordinator(latency)
         self._inbox = MessageBuffer(False, self._on_unsynchronised)
-        self._inbox.install()
+        install(receive=self._inbox.receive)
         self._joining: Dict[str, float] = {}
         self._leaving: List[str] = []
         self._topologies: Dict[str, int] = {}
@@ -66,7 +73,7 @@ class LockStep:
         )
         speed = f"{self._name}/set_parameters"
         monitor = CallMonitor(self._synchronised_nodes, self._on_unsynchronised, harmless=(speed,))
-        delay_service_replies(lambda number: None, monitor)
+        install(before_call=delaying_calls(lambda number: None, monitor))
 
     @property
     def members(self) -> FrozenSet[str]:
@@ -123,7 +130,7 @@ class LockStep:
         unanswered = self._coordinator.unanswered()
         if unanswered:
             wall = time.monotonic()
-            connected = {connection.callerid_pub for connection in self._answers.impl.connections}
+            connected = connected_publishers(self._answers)
             gone = [name for name in unanswered if name not in connected]
             if gone and not self._calls.has_pending:
                 self._drop(gone, f"has died at {stamp:.2f} s")

@@ -12,8 +12,8 @@ from std_msgs.msg import Header
 from planar_ros.lockstep import transport
 from planar_ros.lockstep.ticker import PROGRESS_TOPIC
 from planar_ros.messages.conversion import time_of
+from planar_ros.node.parameters import SettingsReconfigureServer
 from planar_ros.node.readiness import ReadinessMonitor, StallReporter
-from planar_ros.node.reconfigure import SettingsReconfigureServer
 from sim_bridge.config import RunTimeSettings
 from sim_bridge.pacing import Pacer
 from sim_bridge.ros.call_queue import CallQueue

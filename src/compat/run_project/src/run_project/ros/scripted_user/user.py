@@ -9,11 +9,11 @@ from typing import Callable, List, Optional, Tuple
 import rosgraph
 import rospy
 from geometry_msgs.msg import Twist
-from nav_msgs.msg import Odometry
 from sensor_msgs.msg import LaserScan
 
+from evaluation.event_stream import EventStream
+from evaluation.events import TruthUpdated
 from planar import PlanarError, Pose2
-from planar_ros.messages.conversion import pose2_from_msg
 from run_project.course.checks import CheckResults
 
 POLL_SECONDS = 0.05
@@ -55,9 +55,12 @@ class ScriptedUser:
         self._velocity_publisher: Optional[rospy.Publisher] = None
         self._thread = threading.Thread(target=self._run, daemon=True)
 
+    def attach(self, events: EventStream) -> None:
+        """Subscribe to events."""
+        events.subscribe(TruthUpdated, self._on_truth)
+
     def start(self) -> None:
         """Start the procedure. This process must be a ROS node."""
-        rospy.Subscriber("/base_pose_ground_truth", Odometry, self._on_ground_truth, queue_size=5)
         self._thread.start()
 
     def stop(self) -> None:
@@ -168,8 +171,8 @@ class ScriptedUser:
     def _state(self) -> Tuple[List, List, List]:
         return rosgraph.Master("/scripted_user").getSystemState()
 
-    def _on_ground_truth(self, message: Odometry) -> None:
-        base = pose2_from_msg(message.pose.pose)
+    def _on_truth(self, event: TruthUpdated) -> None:
+        base = event.pose
         if self._base is not None:
             self.total_motion += base.distance_to(self._base) + abs(_wrapped(base.yaw - self._base.yaw))
         self._base = base

@@ -1,0 +1,1 @@
+"""Consumers of run events: judge, recorder, trace, figures. No ROS."""

@@ -1,0 +1,33 @@
+"""Wall-clock time until the robot moves."""
+
+import time
+from typing import Any, Dict, Optional
+
+from evaluation.event_stream import EventStream
+from evaluation.events import TruthUpdated
+from planar import Pose2
+from supervision.processes import start_of_this_process
+
+MOTION_DISTANCE = 0.02
+
+
+class FirstMotion:
+    """Measures the time from the start of this process to the first motion."""
+
+    def __init__(self) -> None:
+        self._start: Optional[Pose2] = None
+        self._wall: Optional[float] = None
+
+    def attach(self, events: EventStream) -> None:
+        """Subscribe to events."""
+        events.subscribe(TruthUpdated, self._on_truth)
+
+    def result_fields(self) -> Dict[str, Any]:
+        """Return the field of result.json."""
+        seconds = None if self._wall is None else round(self._wall - start_of_this_process(), 3)
+        return {"first_motion_wall_seconds": seconds}
+
+    def _on_truth(self, event: TruthUpdated) -> None:
+        self._start = self._start or event.pose
+        if self._wall is None and self._start.distance_to(event.pose) > MOTION_DISTANCE:
+            self._wall = time.time()

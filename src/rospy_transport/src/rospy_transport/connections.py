@@ -1,0 +1,116 @@
+"""What rospy knows about the topics and connections of this node; rospy publishes only their number."""
+
+import socket
+from typing import Any, FrozenSet, Iterator, List, Set, Tuple
+
+import rospy
+from rospy.impl.registration import get_topic_manager
+from rospy.impl.tcpros_base import TCPROSTransport
+from rospy.impl.tcpros_pubsub import QueuedConnection, TCPROSPub
+
+from rospy_transport.replacements import ImmediateConnection
+
+
+def outgoing() -> Iterator[Tuple[str, str, Any]]:
+    """Yield receiver, topic and connection of everything this node publishes.
+
+    Needed to count the messages to each node; rospy makes a normal connection, without the replaced class,
+    for a subscriber that connects before the queue size of the topic is known.
+    """
+    for topic, publisher in list(get_topic_manager().pubs.items()):
+        for connection in publisher.connections:
+            yield connection.endpoint_id, topic, connection
+
+
+def message_count(connection: Any) -> int:
+    """Return the number of messages sent over a connection; needed to wait for them at the receiver."""
+    if isinstance(connection, ImmediateConnection):
+        return connection.message_count()
+    return int(connection.stat_num_msg)
+
+
+def topic_names() -> Tuple[FrozenSet[str], FrozenSet[str]]:
+    """Return the published and the subscribed topics; needed to notice when they change."""
+    manager = get_topic_manager()
+    return frozenset(manager.pubs), frozenset(manager.subs)
+
+
+def is_subscribed(topic: str) -> bool:
+    """Return whether this node subscribes to a topic; needed to wait for no message of an ended subscription.
+
+    Args:
+        topic: Resolved name.
+    """
+    return topic in get_topic_manager().subs
+
+
+def connected_publishers(subscriber: rospy.Subscriber) -> Set[str]:
+    """Return the nodes from which a subscriber can receive.
+
+    Needed because rospy counts a connection before its handshake, after which the name of the node is known.
+    """
+    return {connection.callerid_pub for connection in subscriber.impl.connections}
+
+
+def is_connected(publisher: rospy.Publisher, node: str) -> bool:
+    """Return whether a node is connected to a publisher; needed because others may be counted instead."""
+    return bool(publisher.impl.has_connection(node))
+
+
+def full_queues(publisher: rospy.Publisher) -> int:
+    """Return for how many subscribers the next message drops an older one; rospy counts no drops."""
+    return sum(_is_full(connection) for connection in publisher.impl.connections)
+
+
+class OpenConnections:
+    """The connections of a publisher that are open now; needed to end a node after its last message is sent.
+
+    When a node ends, rospy closes its connections without sending the queued messages.
+
+    Args:
+        publisher: The publisher.
+    """
+
+    def __init__(self, publisher: rospy.Publisher):
+        self._connections = [each for each in publisher.impl.connections if not each.done]
+        self._is_latched = publisher.impl.latch is not None
+
+    def are_sending(self) -> bool:
+        """Return whether messages are queued; a latched one is, shortly after a connection is made."""
+        return any(self._is_sending(each) for each in self._connections)
+
+    def sockets(self) -> List[socket.socket]:
+        """Return the sockets of the connections that are still open."""
+        found = [getattr(each, "socket", None) for each in self._connections]
+        return [each for each in found if each is not None]
+
+    def _is_sending(self, connection: Any) -> bool:
+        if isinstance(connection, ImmediateConnection):
+            has_unsent = connection.has_unsent()
+        else:
+            has_unsent = bool(getattr(connection, "_queue", None))
+        return has_unsent or (self._is_latched and connection.stat_num_msg == 0)
+
+
+def connect(publisher: rospy.Publisher, node: str, end: socket.socket) -> Any:
+    """Connect a subscriber to a publisher without handshake, for tests without a master.
+
+    Args:
+        publisher: The publisher.
+        node: Name of the subscribing node.
+        end: Connected socket whose other end the subscriber reads.
+
+    Returns:
+        The connection.
+    """
+    topic = publisher.resolved_name
+    transport = TCPROSTransport(TCPROSPub(topic, publisher.data_class), topic)
+    transport.set_socket(end, node)
+    publisher.impl.add_connection(transport)
+    return next(each for each in publisher.impl.connections if each.endpoint_id == node)
+
+
+def _is_full(connection: Any) -> bool:
+    if not isinstance(connection, QueuedConnection):
+        return False
+    return 0 < connection._queue_size <= len(connection._queue)

@@ -1,0 +1,88 @@
+"""Connection check: whether every subscriber of the synchronized nodes is connected to its publishers."""
+
+import xmlrpc.client
+from itertools import chain
+from typing import Any, Collection, Dict, List, Set, Tuple
+
+import rosgraph
+import rospy
+
+from planar_ros.lockstep.transport import ANSWER_TOPIC, STATIC_TOPIC
+from rospy_transport.connections import outgoing
+from supervision.ros.node_api import TimedTransport
+
+ANSWER_SECONDS = 1.0
+_UNAVAILABLE = (OSError, xmlrpc.client.Error)
+NodesByName = Dict[str, List[str]]
+
+
+class ConnectionCheck:
+    """Queries the master and the nodes, with time-outs."""
+
+    def __init__(self):
+        self._master = rosgraph.get_master_uri()
+        self._uris: Dict[str, str] = {}
+
+    def missing(
+        self, members: Collection[str], observers: Collection[str], static_publishers: Collection[str]
+    ) -> List[str]:
+        """Return descriptions of the missing connections.
+
+        Args:
+            members: Synchronized nodes; every connection between them is required, and from them to
+                observers.
+            observers: Unsynchronized nodes that must receive all messages.
+            static_publishers: Nodes whose /tf_static the members must receive.
+        """
+        try:
+            published, subscribed, _ = self._state()
+            required = {
+                (sender, topic, receiver)
+                for topic, senders in published.items()
+                for sender in senders
+                for receiver in subscribed.get(topic, ())
+                if sender in members and (receiver in members or receiver in observers)
+            }
+            subscribers = set(members).intersection(subscribed.get(STATIC_TOPIC, ()))
+            required.update(
+                (name, STATIC_TOPIC, receiver) for name in static_publishers for receiver in subscribers
+            )
+            senders = {sender for sender, _, _ in required}.intersection(chain(*published.values()))
+            established = set(chain(*(self._outgoing(name) for name in senders)))
+        except _UNAVAILABLE as error:
+            return [f"a reply of the nodes ({error})"]
+        return [
+            f"{topic} from {sender} to {receiver}"
+            for sender, topic, receiver in sorted(required - established)
+        ]
+
+    def known_nodes(self) -> Tuple[Set[str], Set[str]]:
+        """Return the nodes known to the master, and those of them that can be synchronized."""
+        try:
+            tables = self._state()
+        except _UNAVAILABLE:
+            return set(), set()
+        names = set(chain(*(chain(*table.values()) for table in tables)))
+        return names, set(tables[0].get(ANSWER_TOPIC, ()))
+
+    def _state(self) -> Tuple[NodesByName, NodesByName, NodesByName]:
+        published, subscribed, services = _query(self._master, "getSystemState")
+        return dict(published), dict(subscribed), dict(services)
+
+    def _outgoing(self, name: str) -> Set[Tuple[str, str, str]]:
+        if name == rospy.get_name():
+            return {(name, topic, receiver) for receiver, topic, _ in outgoing()}
+        if name not in self._uris:
+            self._uris[name] = _query(self._master, "lookupNode", name)
+        try:
+            bus = _query(self._uris[name], "getBusInfo")
+        except _UNAVAILABLE:
+            del self._uris[name]
+            raise
+        return {(name, topic, receiver) for _, receiver, direction, _, topic, *_ in bus if direction == "o"}
+
+
+def _query(uri: str, method: str, *arguments: str) -> Any:
+    proxy: Any = xmlrpc.client.ServerProxy(uri, transport=TimedTransport(ANSWER_SECONDS))
+    _code, _status, value = getattr(proxy, method)(rospy.get_name(), *arguments)
+    return value
