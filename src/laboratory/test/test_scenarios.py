@@ -86,6 +86,30 @@ def test_a_scenario_that_cannot_run_is_named_and_the_others_are_loaded(tmp_path)
     assert str(in_a_wall) in complaints[1] and "robot.start (50, 0) lies outside the map" in complaints[1]
 
 
+def test_all_mistakes_of_a_scenario_are_reported_at_once(tmp_path):
+    text = """\
+abuot: x
+world: {fiel: x}
+robot: {profile: turtlebto_lidar, start: {x: 0.5, y: left}}
+simulation: {noise: worse, range_noise: -1, rainge_noise: 2}
+task: {errant: x}
+happens:
+  boxes: [{x: 1}, {x: a, y: 2}]
+  doors: [{width: 20, x: 0, y: 0}]
+  people: [{goals: here}, {goals: [[0, 0]], speed: 9}]
+  faults: [{kind: scan_nosy}, {kind: scan_noisy, start: -1}]
+  faulst: []
+planner: {name: nothing/Such, parameters: {DWAPlannerROS: {max_vel_x: fast}}}
+limits: {seconds: -3}
+seeds: many
+"""
+    with pytest.raises(SettingsError) as caught:
+        read_scenario(written(tmp_path, text))
+    lines = [int(line.split(":")[1]) for line in str(caught.value).splitlines()]
+    # The parameters in line 12 cannot be judged without the planner.
+    assert sorted(lines) == [1, 2, 3, 3, 4, 4, 4, 5, 7, 7, 8, 9, 9, 10, 10, 11, 12, 13, 14]
+
+
 def test_a_missing_suite_is_refused():
     with pytest.raises(SettingsError, match="nonsense: not a file, a folder or one of scenarios"):
         load_suites(["nonsense"])

@@ -111,6 +111,23 @@ def test_a_place_in_a_wall_is_reported_with_line_and_key(picture, complaint):
     assert parse(grid=grid_from_picture("...")).places
 
 
+def test_all_mistakes_of_a_mission_are_reported_at_once():
+    text = """\
+plaecs: {}
+places: {desk: {x: 1}, door: {x: a, y: 2}, shelf: {x: 1, y: 2}}
+objects: {cup: {size: -1}, plate: {size: 0.1}, book: {color: [1, 2]}}
+settings: {pickup_seconds: soon}
+deliveries:
+  - {object: plate, from: shelf, to: shelf}
+  - {object: plate, from: cellar, to: attic}
+  - {object: plate, from: kitchen}
+"""
+    with pytest.raises(SettingsError) as caught:
+        parse_mission(text, {"kitchen": NamedPlace("kitchen", Pose2())})
+    lines = [line.split(":")[1] for line in str(caught.value).splitlines()]
+    assert lines == ["1", "2", "2", "3", "3", "4", "6", "7", "7", "8"]
+
+
 def chain(count):
     """Deliveries each of which waits for the next one in the file."""
     entry = "  - {{name: d{0}, object: o{0}, from: door, to: desk, after: {1}}}"

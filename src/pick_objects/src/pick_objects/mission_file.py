@@ -1,11 +1,12 @@
-"""Mission files: YAML; every mistake is reported with file, line and key."""
+"""Mission files: YAML; all mistakes are reported at once, with file, line and key."""
 
 from dataclasses import fields
 from pathlib import Path
-from typing import Dict, List, Mapping, Optional, Set, Tuple, Union
+from typing import Collection, Dict, List, Mapping, Optional, Sequence, Set, Tuple, Union
 
 from pick_objects.config import ErrandSettings
 from pick_objects.mission import ORANGE, Delivery, Mission, MissionObject
+from planar.config.error_list import ErrorList, read_each
 from planar.config.hints import hint_or_choices
 from planar.config.settings import settings_from
 from planar.config.yaml_table import Table, parse_table, read_table
@@ -55,24 +56,36 @@ def _mission(
     grid: Optional[OccupancyGrid],
 ) -> Mission:
     # ``faults`` are read by the simulator.
-    table.allow_only("name", "places", "objects", "settings", "deliveries", "faults")
-    name = table.text("name", Path(source).stem)
-    places = {**known_places, **_places(table, grid)}
-    objects = _objects(table)
-    settings = _settings(table, defaults)
-    deliveries = _deliveries(table, places, objects)
-    return Mission(name, places, deliveries, objects, settings)
+    errors = ErrorList()
+    errors.read(table.allow_only, "name", "places", "objects", "settings", "deliveries", "faults")
+    name = errors.read(table.text, "name", Path(source).stem) or ""
+    places = errors.read(_places, table, grid) or {}
+    objects = errors.read(_objects, table) or {}
+    settings = errors.read(_settings, table, defaults) or defaults
+    # The names of those that could not be read are known as well.
+    place_names = {**known_places, **dict.fromkeys(_keys(table, "places"))}
+    deliveries = errors.read(_deliveries, table, place_names, _keys(table, "objects")) or ()
+    errors.raise_all()
+    return Mission(name, {**known_places, **places}, deliveries, objects, settings)
+
+
+def _keys(table: Table, key: str) -> List[str]:
+    """The keys of the table under a key; none if there is no such table."""
+    return list(ErrorList().read(table.table, key) or ())
 
 
 def _places(table: Table, grid: Optional[OccupancyGrid]) -> Dict[str, NamedPlace]:
     if "places" not in table:
         return {}
     places_table = table.table("places")
-    places = {name: parse_place(places_table, name) for name in places_table}
-    if grid is not None:
-        for place in places.values():
-            _check_free(place, places_table.table(place.name), grid)
-    return places
+
+    def read(name: str) -> NamedPlace:
+        place = parse_place(places_table, name)
+        if grid is not None:
+            _check_free(place, places_table.table(name), grid)
+        return place
+
+    return {place.name: place for place in read_each(read, places_table)}
 
 
 def _check_free(place: NamedPlace, entry: Table, grid: OccupancyGrid) -> None:
@@ -85,21 +98,21 @@ def _check_free(place: NamedPlace, entry: Table, grid: OccupancyGrid) -> None:
 def _objects(table: Table) -> Dict[str, MissionObject]:
     if "objects" not in table:
         return {}
-    entries, objects = table.table("objects"), {}
-    for name in entries:
-        entry = entries.table(name)
-        entry.allow_only("size", "color", "solid")
-        size = entry.number("size", MissionObject(name).size)
-        entry.check(size > 0.0, "size", "positive")
-        color = entry.numbers("color", "red, green, blue") if "color" in entry else ORANGE
-        entry.check(all(0.0 <= share <= 1.0 for share in color), "color", "three numbers from 0 to 1")
-        solid = entry.flag("solid", False)
-        if solid:
-            entry.check(
-                size <= MAX_SOLID_SIZE, "size", f"at most {MAX_SOLID_SIZE}, that the robot can carry it"
-            )
-        objects[name] = MissionObject(name, size, color, solid)  # type: ignore[arg-type]
-    return objects
+    entries = table.table("objects")
+    objects = read_each(lambda name: _object(entries.table(name), name), entries)
+    return {each.name: each for each in objects}
+
+
+def _object(entry: Table, name: str) -> MissionObject:
+    entry.allow_only("size", "color", "solid")
+    size = entry.number("size", MissionObject(name).size)
+    entry.check(size > 0.0, "size", "positive")
+    color = entry.numbers("color", "red, green, blue") if "color" in entry else ORANGE
+    entry.check(all(0.0 <= share <= 1.0 for share in color), "color", "three numbers from 0 to 1")
+    solid = entry.flag("solid", False)
+    if solid:
+        entry.check(size <= MAX_SOLID_SIZE, "size", f"at most {MAX_SOLID_SIZE}, that the robot can carry it")
+    return MissionObject(name, size, color, solid)  # type: ignore[arg-type]
 
 
 def _settings(table: Table, defaults: ErrandSettings) -> ErrandSettings:
@@ -111,37 +124,44 @@ def _settings(table: Table, defaults: ErrandSettings) -> ErrandSettings:
     return settings
 
 
-def _deliveries(table: Table, places: Places, objects: Mapping[str, MissionObject]) -> Tuple[Delivery, ...]:
+def _deliveries(table: Table, places: Collection[str], objects: Collection[str]) -> Tuple[Delivery, ...]:
     entries = table.tables("deliveries")
     if not entries:
         raise table.error_at("deliveries", "are missing: [{object: ..., from: ..., to: ...}]")
-    deliveries: List[Delivery] = []
+    numbered = enumerate(entries, 1)
+    deliveries = read_each(lambda item: _delivery(item[1], item[0], places, objects), numbered)
     lines: Dict[str, Table] = {}
-    for number, entry in enumerate(entries, 1):
-        delivery = _delivery(entry, number, places, objects)
+    for delivery, entry in zip(deliveries, entries):
         if delivery.name in lines:
             raise entry.error_at("name", f"{delivery.name} is that of another delivery already")
         lines[delivery.name] = entry
-        deliveries.append(delivery)
-    for delivery in deliveries:
-        _check_name(lines[delivery.name], "after", delivery.after, lines, "delivery")
+    read_each(lambda each: _check_name(lines[each.name], "after", each.after, lines, "delivery"), deliveries)
     _check_cycles(deliveries, lines)
     _check_object_locations(deliveries, lines)
-    return tuple(deliveries)
+    return deliveries
 
 
-def _delivery(entry: Table, number: int, places: Places, objects: Mapping[str, MissionObject]) -> Delivery:
-    entry.allow_only("name", "object", "from", "to", "after", "goal_timeout")
-    object_name, source, destination = (entry.text(key) for key in ("object", "from", "to"))
-    _check_name(entry, "from", [source], places, "place")
-    _check_name(entry, "to", [destination], places, "place")
-    if objects:
-        _check_name(entry, "object", [object_name], objects, "object")
-    entry.check(source != destination, "to", f"another place than {source}")
-    timeout = entry.number("goal_timeout") if "goal_timeout" in entry else None
-    entry.check(timeout is None or timeout > 0.0, "goal_timeout", "positive")
+def _delivery(entry: Table, number: int, places: Collection[str], objects: Collection[str]) -> Delivery:
+    errors = ErrorList()
+    errors.read(entry.allow_only, "name", "object", "from", "to", "after", "goal_timeout")
+    source = errors.read(_text_of, entry, "from", places, "place") or ""
+    destination = errors.read(_text_of, entry, "to", places, "place") or ""
+    object_name = errors.read(_text_of, entry, "object", objects, "object") or ""
+    if source:
+        errors.read(entry.check, source != destination, "to", f"another place than {source}")
+    timeout = errors.read(entry.number, "goal_timeout") if "goal_timeout" in entry else None
+    errors.read(entry.check, timeout is None or timeout > 0.0, "goal_timeout", "positive")
+    errors.raise_all()
     name = entry.text("name", f"delivery {number}")
     return Delivery(name, object_name, source, destination, tuple(entry.texts("after")), timeout)
+
+
+def _text_of(entry: Table, key: str, known: Collection[str], kind: str) -> str:
+    """The text of a key, which is one of the known names unless there are none."""
+    text = entry.text(key)
+    if known:
+        _check_name(entry, key, [text], known, kind)
+    return text
 
 
 def _check_name(entry: Table, key: str, names, known, kind: str) -> None:
@@ -150,7 +170,7 @@ def _check_name(entry: Table, key: str, names, known, kind: str) -> None:
             raise entry.error_at(key, f"names no {kind}: {name}{hint_or_choices(name, known)}")
 
 
-def _check_cycles(deliveries: List[Delivery], lines: Mapping[str, Table]) -> None:
+def _check_cycles(deliveries: Sequence[Delivery], lines: Mapping[str, Table]) -> None:
     """Refuse deliveries that wait for each other, also because they carry the same object on."""
     waits_for: Dict[str, Set[str]] = {}
     latest_of_object: Dict[str, str] = {}
@@ -176,7 +196,7 @@ def _check_cycles(deliveries: List[Delivery], lines: Mapping[str, Table]) -> Non
         raise lines[name].error_at("after", f"makes a cycle: {', '.join(waits_for)} wait for each other")
 
 
-def _check_object_locations(deliveries: List[Delivery], lines: Mapping[str, Table]) -> None:
+def _check_object_locations(deliveries: Sequence[Delivery], lines: Mapping[str, Table]) -> None:
     """Refuse a delivery whose object was left elsewhere by the one before."""
     left_at: Dict[str, Delivery] = {}
     for delivery in deliveries:

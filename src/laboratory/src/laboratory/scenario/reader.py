@@ -1,7 +1,8 @@
-"""Reader of scenario files; every error names file, line and key."""
+"""Reader of scenario files; all mistakes are reported at once, with file, line and key."""
 
+from dataclasses import fields
 from pathlib import Path
-from typing import Any, Callable, Dict, Mapping, Tuple, TypeVar
+from typing import Any, Callable, Dict, Mapping, Optional, Tuple, TypeVar
 
 from headless_mission import EpisodeConditions
 from laboratory.scenario.registry import TASKS, WORLD_SOURCES
@@ -10,11 +11,12 @@ from laboratory.scenario.seeds import parse_seeds
 from laboratory.tasks.odom_goal import navigation_config
 from laboratory.worlds.custom import read_custom_worlds
 from laboratory.worlds.doors import read_doors
-from laboratory.worlds.people import Pedestrians, read_people
+from laboratory.worlds.people import read_people
 from laboratory.worlds.source import WorldSource
 from move_base_lite import settings_from_parameters
 from move_base_lite.control import check_local_planner
 from planar import Pose2, SettingsError
+from planar.config.error_list import ErrorList, read_each
 from planar.config.hints import hint
 from planar.config.settings import settings_from
 from planar.config.yaml_table import Table, read_table
@@ -28,39 +30,44 @@ Kind = TypeVar("Kind")
 
 
 def read_scenario(path: Path) -> Scenario:
-    """Read a scenario file. Raises SettingsError with file, line and key."""
-    table = read_table(path)
-    table.allow_only(*KEYS)
-    robot, start = _read_robot(_part(table, "robot", "profile", "start"))
-    happens = _part(table, "happens", "boxes", "doors", "people", "faults")
-    planner = _part(table, "planner", "name", "parameters")
-    return Scenario(
-        name=path.stem,
-        file=path.resolve(),
-        about=table.text("about") if "about" in table else "",
-        world=_read_world(table, path.parent),
-        task=_read_kind(table, "task", TASKS, path.parent),
-        robot=robot,
-        start=start,
-        simulation=_read_simulation(table),
-        **_read_boxes(happens),
-        doors=read_doors(happens) if happens else 0,
-        people=read_people(happens) if happens else Pedestrians(),
-        faults=faults_from(happens) if happens else (),
-        planner=_read_planner(planner) if planner and "name" in planner else "",
-        parameters=_read_parameters(planner, robot) if planner else {},
-        seconds=_read_seconds(_part(table, "limits", "seconds")),
-        seeds=_read_seeds(table),
-    )
+    """Read a scenario file. Raises SettingsError with file, line and key of every mistake."""
+    table, errors = read_table(path), ErrorList()
+    errors.read(table.allow_only, *KEYS)
+    about = errors.read(table.text, "about") if "about" in table else ""
+    world = errors.read(_read_world, table, path.parent)
+    robot, start = errors.read(_read_robot, table) or (Scenario.robot, Scenario.start)
+    parts: Dict[str, Any] = {
+        "about": about,
+        "world": world,
+        "simulation": errors.read(_read_simulation, table),
+        "task": errors.read(_read_kind, table, "task", TASKS, path.parent),
+        **(errors.read(_read_happens, table) or {}),
+        **(errors.read(_read_planner, table, robot) or {}),
+        "seconds": errors.read(_read_seconds, table),
+        "seeds": errors.read(_read_seeds, table),
+    }
+    errors.raise_all()
+    return Scenario(name=path.stem, file=path.resolve(), robot=robot, start=start, **parts)
 
 
-def _part(table: Table, key: str, *known: str) -> Any:
-    """The table of a key, which may only have the known keys; None if it is missing."""
-    if key not in table:
-        return None
-    part = table.table(key)
-    part.allow_only(*known)
+def _part(table: Table, key: str, errors: ErrorList, *known: str) -> Optional[Table]:
+    """The table of a key, which may only have the known keys; None if it is missing or no table."""
+    part = errors.read(table.table, key) if key in table else None
+    if part is not None:
+        errors.read(part.allow_only, *known)
     return part
+
+
+def _read_happens(table: Table) -> Dict[str, Any]:
+    errors = ErrorList()
+    happens = _part(table, "happens", errors, "boxes", "doors", "people", "faults")
+    parts: Dict[str, Any] = {}
+    if happens is not None:
+        parts.update(errors.read(_read_boxes, happens) or {})
+        for key, reader in (("doors", read_doors), ("people", read_people), ("faults", faults_from)):
+            parts[key] = errors.read(reader, happens)
+    errors.raise_all()
+    return parts
 
 
 def _read_world(table: Table, folder: Path) -> WorldSource:
@@ -86,51 +93,76 @@ def _read_kind(
     return kinds[found[0]](part, folder)
 
 
-def _read_boxes(happens: Any) -> Dict[str, Any]:
+def _read_boxes(happens: Table) -> Dict[str, Any]:
     """The number of boxes, or a list of their poses."""
-    if happens is None or "boxes" not in happens:
+    if "boxes" not in happens:
         return {}
     if not isinstance(happens.value("boxes"), list):
         return {"boxes": happens.count("boxes")}
-    places = happens.tables("boxes")
-    for place in places:
-        place.allow_only("x", "y", "yaw")
-    return {"boxes_at": tuple(map(parse_pose, places))}
+    return {"boxes_at": read_each(_read_pose, happens.tables("boxes"))}
 
 
-def _read_robot(table: Any) -> Tuple[str, Pose2]:
-    if table is None:
-        return Scenario.robot, Scenario.start
-    name = table.text("profile", Scenario.robot)
+def _read_pose(table: Table) -> Pose2:
+    table.allow_only("x", "y", "yaw")
+    return parse_pose(table)
+
+
+def _read_robot(table: Table) -> Tuple[str, Pose2]:
+    errors = ErrorList()
+    part = _part(table, "robot", errors, "profile", "start")
+    name, start = Scenario.robot, Scenario.start
+    if part is not None:
+        name = errors.read(_read_profile, part) or name
+        if "start" in part:
+            start = errors.read(lambda: _read_pose(part.table("start"))) or start
+    errors.raise_all()
+    return name, start
+
+
+def _read_profile(robot: Table) -> str:
+    name = robot.text("profile", Scenario.robot)
     try:
         robot_named(name)
     except RobotError as error:
-        raise table.error_at("profile", f"cannot be used: {error}") from None
-    start = Scenario.start
-    if "start" in table:
-        start_table = table.table("start")
-        start_table.allow_only("x", "y", "yaw")
-        start = parse_pose(start_table)
-    return name, start
+        raise robot.error_at("profile", f"cannot be used: {error}") from None
+    return name
 
 
 def _read_simulation(table: Table) -> SimulationSettings:
     """A noise profile, and single values that override it."""
     if "simulation" not in table:
         return SimulationSettings()
-    part = table.table("simulation")
+    part, errors = table.table("simulation"), ErrorList()
     values: Dict[str, Any] = {key: part.value(key) for key in part if key != "noise"}
+    noise = errors.read(_read_noise, part) or {}
+    known = {field.name for field in fields(SimulationSettings)}
+    errors.read(part.allow_only, "noise", *known)
+    given = {**noise, **{key: value for key, value in values.items() if key in known}}
+    read = errors.read(lambda: settings_from(SimulationSettings, given, where=part.location_of)[0])
+    errors.raise_all()
+    return read or SimulationSettings()
+
+
+def _read_noise(simulation: Table) -> Dict[str, Any]:
     try:
-        noise = noise_named(part.text("noise", "turtlebot"))
+        return noise_named(simulation.text("noise", "turtlebot"))
     except SettingsError as error:
-        raise part.error_at("noise", f"cannot be used: {error}") from None
-    settings, unknown = settings_from(SimulationSettings, {**noise, **values}, where=part.location_of)
-    if unknown:
-        part.allow_only("noise", *(key for key in part if key not in unknown))
-    return settings
+        raise simulation.error_at("noise", f"cannot be used: {error}") from None
 
 
-def _read_planner(planner: Table) -> str:
+def _read_planner(table: Table, robot: str) -> Dict[str, Any]:
+    """Name of the local planner and parameters of move_base."""
+    errors = ErrorList()
+    planner = _part(table, "planner", errors, "name", "parameters")
+    parts: Dict[str, Any] = {}
+    if planner is not None:
+        parts["planner"] = (errors.read(_read_planner_name, planner) if "name" in planner else "") or ""
+        parts["parameters"] = errors.read(_read_parameters, planner, parts["planner"], robot)
+    errors.raise_all()
+    return parts
+
+
+def _read_planner_name(planner: Table) -> str:
     name = planner.text("name")
     try:
         if name != OFFICIAL:
@@ -140,23 +172,25 @@ def _read_planner(planner: Table) -> str:
     return name
 
 
-def _read_parameters(planner: Table, robot: str) -> Mapping[str, Any]:
+def _read_parameters(planner: Table, name: str, robot: str) -> Mapping[str, Any]:
     """Parameters of move_base by their official names; unknown ones are an error."""
     if "parameters" not in planner:
         return {}
     values = planner.table("parameters").values()
-    name = planner.text("name") if "name" in planner else ""
     try:
         EpisodeConditions(name, values).navigation(navigation_config(robot))
         _, warnings = settings_from_parameters({**values, **({"base_local_planner": name} if name else {})})
     except SettingsError as error:
         raise planner.error_at("parameters", f"cannot be used: {error}") from None
     if warnings:
-        raise planner.error_at("parameters", f"cannot be used: {warnings[0]}")
+        raise planner.error_at("parameters", f"cannot be used: {'; '.join(warnings)}")
     return values
 
 
-def _read_seconds(limits: Any) -> float:
+def _read_seconds(table: Table) -> float:
+    errors = ErrorList()
+    limits = _part(table, "limits", errors, "seconds")
+    errors.raise_all()
     if limits is None:
         return Scenario.seconds
     seconds = limits.number("seconds")

@@ -9,6 +9,7 @@ import numpy as np
 from laboratory.tasks.shortest_paths import PASSAGE_CLEARANCE, connected_regions
 from laboratory.worlds.source import Arena
 from planar import OCCUPIED, OccupancyGrid, Pose2, SettingsError
+from planar.config.error_list import read_each
 from planar.config.yaml_table import Table
 from planar.maps.places import parse_pose
 from sim_bridge.doorway import Door
@@ -73,7 +74,8 @@ def read_doors(happens: Table) -> Union[int, Tuple[Door, ...]]:
         return 0
     if not isinstance(happens.value("doors"), list):
         return happens.count("doors")
-    return tuple(_read_door(f"door_{number}", table) for number, table in enumerate(happens.tables("doors")))
+    tables = enumerate(happens.tables("doors"))
+    return read_each(lambda entry: _read_door(f"door_{entry[0]}", entry[1]), tables)
 
 
 def _read_door(name: str, table: Table) -> Door:

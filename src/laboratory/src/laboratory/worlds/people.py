@@ -7,6 +7,7 @@ import numpy as np
 
 from laboratory.worlds.source import Arena
 from planar import FREE, OccupancyGrid, Pose2, SettingsError
+from planar.config.error_list import read_each
 from planar.config.yaml_table import Table
 from planar.geometry.distance_field import distance_field
 from sim_bridge.people.walker import Walker
@@ -187,7 +188,7 @@ def read_people(happens: Table) -> Pedestrians:
     if isinstance(happens.value("people"), int):
         people = Pedestrians(unspecified=happens.count("people"))
     elif isinstance(happens.value("people"), list):
-        people = Pedestrians(routes=tuple(_read_route(table) for table in happens.tables("people")))
+        people = Pedestrians(routes=read_each(_read_route, happens.tables("people")))
     else:
         table = happens.table("people")
         table.allow_only("adults", "children", "standing", "groups")

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Callable, Optional, Tuple
 
 from planar import SettingsError
+from planar.config.error_list import read_each
 from planar.config.yaml_table import Table, read_table
 from sim_bridge.faults.kind import Fault
 from sim_bridge.faults.registry import KINDS, default_strength, kind_named, strength_error
@@ -35,7 +36,7 @@ def faults_from(table: Table, unsupported: Check = lambda _: None) -> Tuple[Faul
     Raises:
         SettingsError: With file, line and key.
     """
-    return tuple(_fault(entry, unsupported) for entry in table.tables("faults"))
+    return read_each(lambda entry: _fault(entry, unsupported), table.tables("faults"))
 
 
 def _fault(entry: Table, unsupported: Check) -> Fault:
