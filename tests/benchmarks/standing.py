@@ -19,7 +19,7 @@ import numpy as np
 from amcl_lite import Localizer, LocalizerSettings
 from planar import Pose2, Twist2, load_map, wrap
 from planar.config.parameters import settings_from_yaml
-from sim_bridge import ROBOTS, Simulation, SimulationSettings, StepResult, load_world
+from sim_bridge import ROBOTS, Episode, Simulation, SimulationSettings, StepResult, load_world
 from sim_bridge.noise import NOISE_PROFILES, noise_named
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -54,15 +54,16 @@ class LocalizedRobot:
 
     def __init__(self, robot: str, noise: str, seed: int):
         world = load_world(ROOT / "map" / "home.world")
-        self._simulation = Simulation(world, ROBOTS[robot], SimulationSettings(**noise_named(noise)), seed)
+        simulation = Simulation(world, ROBOTS[robot], SimulationSettings(**noise_named(noise)), seed)
+        self._episode = Episode(simulation, simulation.step_seconds)
         settings, _ = settings_from_yaml(LocalizerSettings, LOCALIZATION_CONFIG)
         grid = load_map(ROOT / "map" / "home.yaml")
         self._localizer = Localizer(grid, settings, np.random.default_rng(seed))
 
     def run(self, seconds: float, command: Twist2 = Twist2()) -> Iterator[StepResult]:
         """Simulate for some time; yield each step."""
-        for _ in range(round(seconds / self._simulation.step_seconds)):
-            result = self._simulation.step(command)
+        for _ in range(round(seconds / self._episode.simulation.step_seconds)):
+            result = self._episode.step(command)
             if result.scan is not None:
                 self._localizer.update(result.odometry.base_in_odom, result.scan)
             yield result

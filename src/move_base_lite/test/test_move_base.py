@@ -117,7 +117,7 @@ def test_a_delayed_scan_is_seen_from_where_the_robot_is_now():
     drive.tick()
     state = drive.move_base.inputs.state(drive.robot.now)
     drive.move_base.add_scan(old)
-    drive.move_base.inputs.take(Twist2())
+    drive.move_base.inputs.check_new(Twist2())
     (observation,) = drive.move_base.inputs.observations(state)
     moved = state.base_in_map.inverse() @ START
     assert moved.x < -0.01
@@ -135,5 +135,5 @@ def test_inputs_are_checked_in_the_order_of_their_stamps():
     for stamp in (0.1, 0.2, 0.3):
         drive.move_base.add_odometry(stamp, Pose2(), Twist2())
     drive.move_base.add_scan(scan)
-    drive.move_base.inputs.take(Twist2())
+    drive.move_base.inputs.check_new(Twist2())
     assert checked == [0.1, 0.2, "scan", 0.3]

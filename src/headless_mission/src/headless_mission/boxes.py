@@ -26,7 +26,7 @@ class BoxHooks(EpisodeHooks):
     """
 
     def __init__(self, simulation: Simulation, grid: OccupancyGrid, errand: ErrandHooks):
-        self._simulator, self._errand = SimulatedBoxes(simulation), errand
+        self._simulator, self._errand = SceneBoxes(simulation), errand
         self._boxes = MissionBoxes(self._simulator)
         self._boxes.set_map(grid)
         self._sent: Deque[List[SolidBox]] = deque()
@@ -39,7 +39,7 @@ class BoxHooks(EpisodeHooks):
             self._boxes.update(self._sent.popleft())
 
 
-class SimulatedBoxes:
+class SceneBoxes:
     """Boxes in a simulation (add_markers: BoxSimulator).
 
     Attributes:

@@ -2,7 +2,7 @@
 
 from typing import Optional
 
-from headless_mission.navigation import MoveBaseClient, NavigationHooks
+from headless_mission.navigation import EpisodeMoveBaseClient, NavigationHooks
 from pick_objects import Errand, FinishTask, GoalDriver, Mission
 from pick_objects.errand import Event
 from sim_bridge import Episode, EpisodeHooks, StepResult
@@ -33,7 +33,7 @@ class ErrandHooks(EpisodeHooks):
         self,
         mission: Mission,
         navigation: NavigationHooks,
-        client: MoveBaseClient,
+        client: EpisodeMoveBaseClient,
         start: Optional[float] = None,
     ):
         self.errand, self.driver = Errand(mission), GoalDriver(client)

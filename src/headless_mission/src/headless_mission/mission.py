@@ -15,7 +15,7 @@ from headless_mission.boxes import BoxHooks
 from headless_mission.conditions import EpisodeConditions
 from headless_mission.errand import ErrandHooks
 from headless_mission.localization import LocalizationHooks
-from headless_mission.navigation import MoveBaseClient, NavigationHooks
+from headless_mission.navigation import EpisodeMoveBaseClient, NavigationHooks
 from headless_mission.observers import MissionObserver
 from headless_mission.result import EpisodeResult
 from pick_objects import FinishTask, Mission
@@ -57,7 +57,7 @@ class HeadlessMission:
             world, robot, conditions.simulation, seed, start, faults.wrappers
         )
         navigation = NavigationHooks(settings, grid, encoding)
-        client = MoveBaseClient(navigation, encoding)
+        client = EpisodeMoveBaseClient(navigation, encoding)
         self._errand = errand = ErrandHooks(mission, navigation, client, conditions.mission_start)
         self._observer = MissionObserver(simulation, navigation, errand, parcel)
         boxes = BoxHooks(simulation, grid, errand)

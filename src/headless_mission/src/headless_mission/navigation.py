@@ -73,7 +73,7 @@ class NavigationHooks(EpisodeHooks):
         self.diagnosis = self.diagnosis or result.fault or ""
 
 
-class MoveBaseClient(EpisodeHooks):
+class EpisodeMoveBaseClient(EpisodeHooks):
     """Client of move_base in the same process (pick_objects: MoveBasePort); its hooks precede move_base's.
 
     Args:

@@ -32,7 +32,7 @@ class LockedLocalizer:
         """
         localizer = Localizer(grid, self.settings, self._rng)
         start = read_initial_pose()
-        if start != InitialPose():  # where it starts by itself: particles are drawn once, as without ROS
+        if start != InitialPose():  # its default start: particles are drawn once, as without ROS
             localizer.set_pose(start.pose, start.covariance)
         with self.lock:
             if self._pending_pose is not None:

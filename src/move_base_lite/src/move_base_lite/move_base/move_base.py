@@ -173,7 +173,7 @@ class MoveBase:
         """
         if self._navigator is None:
             return TickResult(Decision(Status.IDLE, text="waiting for a map"))
-        self.inputs.take(self._commanded)
+        self.inputs.check_new(self._commanded)
         fault = self.inputs.fault(now)
         missing = self.inputs.missing(now) if fault is None else f"a trustworthy sensor ({fault})"
         state = self.inputs.state(now) if missing is None else None

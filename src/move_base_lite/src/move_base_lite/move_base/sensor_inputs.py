@@ -95,7 +95,7 @@ class SensorInputs:
         """Whether a source has ever sent a measurement."""
         return topic in self._latest_stamps
 
-    def take(self, commanded: Twist2) -> None:
+    def check_new(self, commanded: Twist2) -> None:
         """Check what has arrived since the last tick, in the order of its stamps.
 
         Args:
@@ -107,12 +107,12 @@ class SensorInputs:
         # At equal stamps odometry first, as the pose of the scan.
         for each in sorted(inputs, key=lambda each: (each.stamp, isinstance(each, Measurement))):
             if isinstance(each, Measurement):
-                self._take_measurement(each)
+                self._check_measurement(each)
             else:
                 self._twist = each.twist
                 self._monitor.add_odometry(each.stamp, each.base_in_odom, commanded)
 
-    def _take_measurement(self, measurement: Measurement) -> None:
+    def _check_measurement(self, measurement: Measurement) -> None:
         scan, source = measurement.scan, self.sources.get(measurement.topic)
         if scan is not None and (source is None or source.marking):
             span = scan.angle_increment * (len(scan.ranges) - 1)
