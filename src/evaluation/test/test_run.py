@@ -1,15 +1,18 @@
 """End of a run whose files cannot be written."""
 
 import json
+import threading
 
 import pytest
 
 from evaluation import trace
+from evaluation.event_stream import EventStream
+from evaluation.events import SUCCEEDED, GoalAccepted, GoalEnded, Publication, TruthUpdated
 from evaluation.options import GraphOptions
 from evaluation.ros import run as run_module
 from evaluation.ros.run import Run
 from evaluation.verdict import Verdict
-from planar import FileWriteError
+from planar import FileWriteError, Pose2
 from run_report import RunRecord
 from supervision import run_folder
 from supervision.errors import ResultError
@@ -68,10 +71,20 @@ def run(tmp_path, monkeypatch):
     monkeypatch.setattr(Run, "_bring_up", lambda self: None)
     options = GraphOptions(output=tmp_path)
     made = Run(options, options.launch("home.launch"), Watch(), Watch(), Display())
-    driven = trace.TraceEntry(1, "/state", "/pick_objects", "delivered")
-    made._trace._trace.start(0)
-    made._trace._trace.end(driven)
+    made.events = EventStream()
+    made._trace.attach(made.events)
+    made.events.publish(GoalAccepted(0.0, Pose2(), published(0.0, "/goal")))
+    made.events.publish(outcome(1.0, "a"))
+    monkeypatch.setattr(run_module, "SETTLE_SECONDS", 0.0)
     return made
+
+
+def published(stamp, topic):
+    return Publication(round(stamp * 1e9), topic, "/a_node")
+
+
+def outcome(stamp, identity):
+    return GoalEnded(stamp, identity, SUCCEEDED, identity, published(stamp, "/result"))
 
 
 def full_disk(path, data):
@@ -133,3 +146,27 @@ def test_the_graph_is_ended_whatever_goes_wrong_before(run, monkeypatch):
     with pytest.raises(OSError, match="a view"), run:
         pass
     assert run._supervisor.is_ended
+
+
+def test_the_trace_has_an_outcome_that_is_in_flight_at_the_end(run, monkeypatch):
+    """As on a busy machine, where the thread of one topic is later than that of another."""
+    monkeypatch.setattr(run_module, "SETTLE_SECONDS", 10.0)
+
+    def publish_late():
+        run.events.publish(outcome(0.9, "late"))
+        run.events.publish(TruthUpdated(1.4, Pose2(), publication=published(1.4, "/truth")))
+
+    late = threading.Timer(0.2, publish_late)
+    late.start()
+    with run:
+        assert run.conclude(DONE) == 0
+    late.join()
+    lines = (run.folder / "trace.txt").read_text().splitlines()
+    assert [line.split()[-1] for line in lines] == ["1.0", "'late'", "'a'"]
+
+
+def test_messages_in_flight_are_not_waited_for_if_time_stands_still(run, monkeypatch):
+    monkeypatch.setattr(run_module, "SETTLE_SECONDS", 0.05)
+    with run:
+        assert run.conclude(DONE) == 0
+    assert (run.folder / "trace.txt").exists()

@@ -73,7 +73,7 @@ def test_the_content_of_the_trace(trace, events, tmp_path):
     assert json.loads((tmp_path / "result.json").read_text())["repeatable"] is True
 
 
-def test_remarks_say_why_a_run_is_not_repeatable(trace, events, tmp_path):
+def test_remarks_are_the_reasons_why_a_run_is_not_repeatable(trace, events, tmp_path):
     drive(events)
     events.publish(RemarksUpdated(7.0, ("a node was late",)))
     result = ResultFile(tmp_path)

@@ -28,7 +28,7 @@ class EventStream:
         self._callbacks[kind].append(callback)
 
     def has_consumers_of(self, kind: Type[RunEvent]) -> bool:
-        """Whether somebody has subscribed to events of this type."""
+        """Whether there is a subscription to events of this type."""
         return kind in self._callbacks
 
     def publish(self, event: RunEvent) -> None:

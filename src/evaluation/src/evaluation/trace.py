@@ -83,6 +83,10 @@ class Trace:
         self._outcomes.add(outcome)
         self._end = outcome.stamp if self._end is None else max(outcome.stamp, self._end)
 
+    def is_settled(self, now: int) -> bool:
+        """Whether messages sent before the last outcome are no longer in flight at this time [ns]."""
+        return self._end is None or now > self._end + IN_FLIGHT
+
     def lines(self) -> List[str]:
         """Return the entries in order.
 

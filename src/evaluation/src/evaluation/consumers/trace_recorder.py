@@ -29,6 +29,7 @@ class TraceRecorder:
     def __init__(self) -> None:
         self._trace = Trace()
         self._remarks: Tuple[str, ...] = ()
+        self._now = 0
 
     def attach(self, events: EventStream) -> None:
         """Subscribe to events."""
@@ -37,6 +38,10 @@ class TraceRecorder:
         events.subscribe(OtherRobotUpdated, self._on_other_robot)
         events.subscribe(MarkerUpdated, self._on_marker)
         events.subscribe(RemarksUpdated, self._on_remarks)
+
+    def is_settled(self) -> bool:
+        """Whether everything published before the last outcome should have been received by now."""
+        return self._trace.is_settled(self._now)
 
     def save(self, result: ResultFile) -> None:
         """Add hash and repeatability to a result and write the trace, if anything was driven."""
@@ -49,8 +54,12 @@ class TraceRecorder:
 
     def _on_event(self, event: Any) -> None:
         entry = self._add(event)
-        if entry is not None and isinstance(event, OUTCOMES):
+        if entry is None:
+            return
+        if isinstance(event, OUTCOMES):
             self._trace.end(entry)
+        elif isinstance(event, TruthUpdated):
+            self._now = entry.stamp
 
     def _on_other_robot(self, other: OtherRobotUpdated) -> None:
         if type(other.event) in TEXTS:

@@ -38,6 +38,8 @@ from supervision.versions import versions
 # Node name of the run's process. The simulator knows it from the start and waits for it.
 NODE = "referee"
 REPORT_SECONDS = 60.0
+# Time in which messages that are in flight at the end of the run are waited for [s].
+SETTLE_SECONDS = 1.0
 # Time that views are left open after the verdict [s].
 VIEW_SECONDS = 8.0
 NO_DISPLAY = "--rviz: there is no display (DISPLAY is not set); --web shows the run in the browser"
@@ -148,13 +150,21 @@ class Run:
 
     def conclude(self, verdict: Verdict, **findings: Any) -> int:
         """Write result.json, print the verdict, and return the exit code."""
-        self._record_result(verdict, **findings)
+        figures = {**self._judge.result_fields(), **findings}
+        self._await_messages_in_flight()
+        self._record_result(verdict, **figures)
         if self.result.gap is not None:
             verdict = Verdict(False, f"{self.result.gap}; what the run came to: {verdict.reason}")
             self.result.add(success=False, reason=verdict.reason)
         self._has_succeeded = verdict.success
         self.display.print(f"{'SUCCESS' if verdict.success else 'FAILURE'}: {verdict.reason}")
         return 0 if verdict.success else 1
+
+    def _await_messages_in_flight(self) -> None:
+        """Wait for what was published before the end, such as the outcome of the last goal."""
+        deadline = time.monotonic() + SETTLE_SECONDS
+        while not self._trace.is_settled() and time.monotonic() < deadline:
+            time.sleep(0.01)
 
     def _bring_up(self) -> None:
         self.display.print(f"run folder {self.folder}")
