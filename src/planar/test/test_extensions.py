@@ -30,7 +30,7 @@ class PainterError(PlanarError):
 
 
 class OutOfPaint(PlanarError):  # noqa: N818
-    """A painter may say so."""
+    """A painter may raise it."""
 
 
 @dataclass(frozen=True)
@@ -216,7 +216,7 @@ def test_a_name_without_a_class_is_refused():
         CONTRACT.make("Nobody", PainterSettings())
 
 
-def test_two_classes_that_share_their_settings_are_told_apart_by_them():
+def test_two_classes_that_share_their_settings_are_distinguished():
     first, second = (PAINTERS.find(f"mine.painters/{name}") for name in ("Derived", "DerivedToo"))
     canvas = np.zeros(9)
     assert PAINTERS.make(first.settings()).paint(canvas, grid()) == 9
