@@ -30,7 +30,7 @@ class PainterError(PlanarError):
 
 
 class OutOfPaint(PlanarError):  # noqa: N818
-    """A painter."""
+    """A painter may raise it."""
 
 
 @dataclass(frozen=True)

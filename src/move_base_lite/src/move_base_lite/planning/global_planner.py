@@ -5,7 +5,7 @@ Life cycle: a global planner is constructed with its settings, and again wheneve
 independent of each other.
 
 To add one: a module with settings (a subclass of PlannerSettings), a class and its Plugin, and a line in
-``planning/registry.py``. ``test/test_planner.py`` checks every member of the registry.
+``planning/__init__.py``. ``test/test_planner.py`` checks every member of the registry.
 """
 
 import inspect

@@ -5,7 +5,7 @@ Life cycle: an object is one run of a behaviour. It is constructed with its sett
 dropped. A cancelled or new goal drops it at once, without another call.
 
 To add a behaviour to this package, write a module with settings, a class and its Plugin, and add it to
-``recovery/registry.py``. ``test/test_recovery.py`` checks the contract.
+``recovery/__init__.py``. ``test/test_recovery.py`` checks the contract.
 """
 
 import math
