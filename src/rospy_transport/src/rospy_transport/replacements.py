@@ -87,12 +87,12 @@ class ImmediateConnection(QueuedConnection):
     def _send(self, data: bytes) -> int:
         """Return how many bytes the socket accepted without blocking; errors are left to the thread."""
         try:
-            sent = self._connection.socket.send(data, socket.MSG_DONTWAIT)
+            sent: int = self._connection.socket.send(data, socket.MSG_DONTWAIT)
         except (OSError, AttributeError):
             return 0
         self._connection.stat_bytes += sent
         self._connection.stat_num_msg += 1
-        return int(sent)
+        return sent
 
     def _run(self) -> None:
         while not self._connection.done:
