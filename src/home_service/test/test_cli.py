@@ -18,6 +18,12 @@ from supervision.cli import parse
 from supervision.view_options import speed_factor
 
 
+@pytest.fixture(autouse=True)
+def without_preloaded_processes(monkeypatch):
+    """Commands of these tests start no nodes; each would leave a process that compiles for some seconds."""
+    monkeypatch.setattr("home_service.cli.preload_nodes", lambda: None)
+
+
 def test_goals_are_read_from_a_line():
     assert goal_list("1 2 0.5; -3 4e-1 0;") == [[1.0, 2.0, 0.5], [-3.0, 0.4, 0.0]]
 
