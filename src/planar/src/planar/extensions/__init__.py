@@ -8,9 +8,10 @@ checks of a contract from the command line.
 """
 
 from planar.extensions.guard import MAX_CALL_SECONDS, CallRules, Guard, InvalidAnswer, class_of
-from planar.extensions.loading import PluginError, load_object, source_files
+from planar.extensions.loading import PluginError, load_object
 from planar.extensions.point import ExtensionPoint
 from planar.extensions.registry import Plugin, Registry, SelectedPlugins, registries_of
+from planar.extensions.sources import source_files
 
 __all__ = [
     "MAX_CALL_SECONDS",
