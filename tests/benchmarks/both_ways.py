@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Compares a mission in one process with the same seed over ROS: decisions, times and trajectories.
+"""Compares a mission in one process with the same seed over ROS: decisions, and the true path bit for bit.
 
     python3 tests/benchmarks/both_ways.py [--seeds 42 43 44] [--mission FILE]
 
-Exit code 1 if a decision differs. Trajectories are not bit-identical: over ROS time passes before the first
-goal is sent, so the noise differs.
+The mission in one process starts when the first goal was sent over ROS, with values of the precision of
+messages. The last column is the largest distance of the path with exact values. Exit code 1 if anything else
+differs.
 """
 
 import argparse
@@ -17,59 +18,99 @@ from typing import Any, Dict, List, NamedTuple, Optional
 
 import numpy as np
 
-from headless_mission import HeadlessMission, parcel_for
+from headless_mission import EpisodeConditions, EpisodeResult, HeadlessMission, parcel_for
+from headless_mission.encoding import Encoding, ExactValues, MessageValues
 from headless_mission.inputs import read_mission
 from home_service.commands.rehearse import Rehearse
+from planar.geometry.pose import quaternion_zw
+from sim_bridge.config import LATENCY
 
 ROOT = Path(__file__).resolve().parents[2]
-TRUTH = "/base_pose_ground_truth"
-# Distance from the start at which the robot counts as moving [m].
-DEPARTURE_DISTANCE = 0.05
+TRUTH, GOAL = "/base_pose_ground_truth", "/move_base/current_goal"
+SCRIPT_SECONDS = 300.0
 
 
-class MissionTrace(NamedTuple):
-    """Decisions as texts, position errors at the places [m], true path (N, 3) of stamp, x, y."""
+class RosRun(NamedTuple):
+    """A run over ROS: result.json, when its first goal was sent [s], true x, y, z and w by stamp [ms]."""
 
-    events: List[str]
-    errors: Dict[str, float]
-    path: np.ndarray
+    findings: Dict[str, Any]
+    mission_start: float
+    poses: Dict[int, List[float]]
+
+
+class Comparison(NamedTuple):
+    """A seed in both ways.
+
+    ``poses``: compared; ``differs_at``: stamp of the first pose that differs [s]; ``deviation``: of the path
+    with exact values [m].
+    """
+
+    over_ros: List[str]
+    in_one_process: List[str]
+    poses: int
+    differs_at: Optional[float]
+    deviation: float
 
     @property
-    def seconds(self) -> float:
-        """Time from the first motion to the end [s]."""
-        moved = np.hypot(*(self.path[:, 1:] - self.path[0, 1:]).T) > DEPARTURE_DISTANCE
-        return float(self.path[-1, 0] - self.path[np.argmax(moved), 0])
-
-    def max_deviation(self, other: "MissionTrace") -> float:
-        """Maximum distance between the two paths [m]."""
-        own, others = self.path[:, None, 1:], other.path[None, :, 1:]
-        distances = np.hypot(*np.moveaxis(own - others, 2, 0))
-        return float(max(distances.min(axis=0).max(), distances.min(axis=1).max()))
+    def is_same(self) -> bool:
+        return self.over_ros == self.in_one_process and self.poses > 0 and self.differs_at is None
 
 
-def in_one_process(seed: int, mission: Optional[Path]) -> MissionTrace:
+def compare(seed: int, mission: Optional[Path] = None) -> Comparison:
+    """Run a mission over ROS and in one process."""
+    run = over_ros(seed, mission)
+    first, exact = (
+        in_one_process(seed, mission, run.mission_start, encoding)
+        for encoding in (MessageValues(), ExactValues())
+    )
+    pairs = _pairs(run, first)
+    differing = [stamp for stamp, ours, theirs in pairs if ours != theirs]
+    distances = [np.hypot(a[0] - b[0], a[1] - b[1]) for _, a, b in _pairs(run, exact)]
+    return Comparison(
+        decisions(run.findings),
+        decisions(first.mission_record.result_fields()),
+        len(pairs),
+        differing[0] / 1e3 if differing else None,
+        float(max(distances)),
+    )
+
+
+def in_one_process(seed: int, mission: Optional[Path], start: float, encoding: Encoding) -> EpisodeResult:
     home = read_mission(Rehearse(seed=seed, mission=mission))
     parcel = None if mission else parcel_for(home.mission)
-    run = HeadlessMission(home.world, home.robot, home.grid, home.mission, seed=seed, parcel=parcel).run()
-    findings = run.mission_record.result_fields()
-    return MissionTrace(_decided(findings), findings["position_error"], run.trajectory[:, :3])
+    conditions = EpisodeConditions(mission_start=start, encoding=encoding)
+    stage = home.world, home.robot, home.grid, home.mission
+    return HeadlessMission(*stage, seed=seed, parcel=parcel, conditions=conditions).run()
 
 
-def over_ros(seed: int, mission: Optional[Path]) -> MissionTrace:
+def over_ros(seed: int, mission: Optional[Path]) -> RosRun:
     with tempfile.TemporaryDirectory() as parent:
         options = ["--seed", str(seed), "--output", parent]
         options += [] if mission is None else ["--mission", str(mission)]
-        subprocess.run(
-            [str(ROOT / "scripts/home_service.sh"), *options], stdout=subprocess.DEVNULL, check=False
-        )
+        command = [str(ROOT / "scripts/home_service.sh"), *options]
+        subprocess.run(command, stdout=subprocess.DEVNULL, check=False, timeout=SCRIPT_SECONDS)
         folder = next(Path(parent).iterdir())
         findings = json.loads((folder / "result.json").read_text(encoding="utf-8"))
         trace = [line.split() for line in (folder / "trace.txt").read_text(encoding="utf-8").splitlines()]
-    path = np.array([(row[0], row[3], row[4]) for row in trace if row[1:2] == [TRUTH]], dtype=float)
-    return MissionTrace(_decided(findings), findings["position_error"], path)
+    accepted = next(float(row[0]) for row in trace if row[1] == GOAL)
+    poses = {_ms(float(row[0])): [float(value) for value in row[3:7]] for row in trace if row[1] == TRUTH}
+    return RosRun(findings, accepted - LATENCY, poses)
 
 
-def _decided(findings: Dict[str, Any]) -> List[str]:
+def _pairs(run: RosRun, episode: EpisodeResult):
+    """Stamp [ms] and true x, y, z, w in one process and over ROS at each control period with both."""
+    found = [
+        (_ms(stamp), [x, y, *quaternion_zw(yaw)], run.poses.get(_ms(stamp)))
+        for stamp, x, y, yaw in episode.trajectory.tolist()
+    ]
+    return [pair for pair in found if pair[2] is not None]
+
+
+def _ms(stamp: float) -> int:
+    return round(1e3 * stamp)
+
+
+def decisions(findings: Dict[str, Any]) -> List[str]:
     """Final state and attempts of each delivery, and the marker events of the errand."""
     jobs = [f"{job['name']}: {job['state']}, attempts {job['attempts']}" for job in findings["deliveries"]]
     return [*sorted(jobs), *(findings["markers"] if len(jobs) == 1 else []), findings["final_state"]]
@@ -80,21 +121,19 @@ def main() -> int:
     parser.add_argument("--seeds", type=int, nargs="+", default=[42, 43, 44], help="default: 42 43 44")
     parser.add_argument("--mission", type=Path, help="mission file instead of the errand", metavar="FILE")
     options = parser.parse_args()
-    print("seed  decisions  driving s: process, ROS  worst error m: process, ROS  max deviation m")
+    print("seed  decisions  true poses with the same bits     largest distance with exact values, m")
     all_same = True
     for seed in options.seeds:
-        traces = in_one_process(seed, options.mission), over_ros(seed, options.mission)
-        is_same = traces[0].events == traces[1].events
-        all_same &= is_same
-        seconds = [f"{trace.seconds:.2f}" for trace in traces]
-        errors = [max(trace.errors.values()) for trace in traces]
+        found = compare(seed, options.mission)
+        all_same &= found.is_same
+        is_same = found.over_ros == found.in_one_process
+        poses = f"all {found.poses}" if found.differs_at is None else f"until {found.differs_at:.2f} s"
         print(
-            f"{seed:4}  {'the same' if is_same else 'DIFFERENT'}   {', '.join(seconds):>24}  "
-            f"{errors[0]:.3f}, {errors[1]:.3f}   {traces[0].max_deviation(traces[1]):.3f}",
+            f"{seed:4}  {'the same' if is_same else 'DIFFERENT'}   {poses:32}  {found.deviation:.3f}",
             flush=True,
         )
         if not is_same:
-            print(f"  in one process: {traces[0].events}\n  over ROS: {traces[1].events}")
+            print(f"  in one process: {found.in_one_process}\n  over ROS: {found.over_ros}")
     return 0 if all_same else 1
 
 

@@ -67,6 +67,8 @@ UPGRADE = {
 }
 # A node that can be killed; it publishes a marker repeatedly.
 MORTAL = """
+import time
+
 import rospy
 from visualization_msgs.msg import Marker
 rospy.init_node("mortal")

@@ -50,10 +50,11 @@ class CockpitToolsTest(unittest.TestCase):
             self.page.screenshot(Path(PICTURES) / f"{self.opened}.png".replace("/", "_"))
         if self.opened:
             self.page.tick(self.opened)
+            wait_until("the window to close", lambda: self.page.text().splitlines().count(self.opened) == 1)
         self.assertEqual(self.page.errors, [])
 
     def open(self, title):
-        self.page.click(title)
+        self.page.tick(title)
         self.opened = title
 
     def test_the_graph_is_drawn(self):
@@ -87,6 +88,7 @@ class CockpitToolsTest(unittest.TestCase):
         self.page.wait_for("Watch")
         wait_until("two thirds", lambda: 2.0 / 3.0 <= self.share_of_view() < 1.0)
         self.page.tick("Topics")
+        wait_until("its window to close", lambda: "Watch" not in self.page.text())
 
     def share_of_view(self):
         shown = "document.querySelector('canvas[data-engine]').getBoundingClientRect().width / innerWidth"

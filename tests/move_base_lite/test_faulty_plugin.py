@@ -16,7 +16,7 @@ MESSAGES = {
     "answers NaN": "asked for nan m/s",
     "rushes": "asked for 100 m/s",
     "dawdles": r"took [2-9]\.\d s for an answer",
-    "scribbles": "changed what it was given to read",
+    "scribbles": "raised ValueError: assignment destination is read-only",
 }
 AHEAD = 2.0
 

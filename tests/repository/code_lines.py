@@ -21,18 +21,21 @@ def count(text: str) -> Counter[str]:
     """Count the lines of a module by kind; a line with code and a comment is code."""
     lines = text.splitlines()
     docstrings = docstring_lines(ast.parse(text))
-    code: Set[int] = set()
-    comments: Set[int] = set()
-    for token in tokenize.generate_tokens(io.StringIO(text).readline):
-        if token.type == tokenize.COMMENT:
-            comments.add(token.start[0])
-        elif token.type not in LAYOUT and token.string:
-            code.update(range(token.start[0], token.end[0] + 1))
-    code -= docstrings
-    comments -= code
+    code = numbers_of_code(text)
+    tokens = tokenize.generate_tokens(io.StringIO(text).readline)
+    comments = {token.start[0] for token in tokens if token.type == tokenize.COMMENT} - code
     blank = len(lines) - len(code | docstrings | comments)
     numbers = (1, len(lines), len(code), len(docstrings), len(comments), blank)
     return Counter(dict(zip(KINDS, numbers)))
+
+
+def numbers_of_code(text: str) -> Set[int]:
+    """Return the numbers of the lines with code: neither docstrings nor only comments."""
+    code: Set[int] = set()
+    for token in tokenize.generate_tokens(io.StringIO(text).readline):
+        if token.type not in LAYOUT and token.string:
+            code.update(range(token.start[0], token.end[0] + 1))
+    return code - docstring_lines(ast.parse(text))
 
 
 def docstring_lines(tree: ast.Module) -> Set[int]:

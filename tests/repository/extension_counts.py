@@ -6,14 +6,13 @@ python3 tests/repository/extension_counts.py [ROOT]
 
 import argparse
 import ast
-import io
 import re
 import sys
-import tokenize
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Collection, Dict, Iterator, List, Set, Tuple
 
+import code_lines
 from structure import ROOT, modules
 
 # Files of the mechanism: loading, registries, guards, checks of contracts, templates and their command. The
@@ -36,7 +35,7 @@ PROTOCOLS = re.compile(
     /control/local_planner\.py$ | /planning/global_planner\.py$
     | /recovery/behavior\.py$ | /costmap/layer\.py$
     | /(motion|sensor)/(own|custom)_model\.py$ | /matching/scan_matcher\.py$ | /faults/kind\.py$
-    | /worlds/(own|custom)\.py$ | /home_service/command\.py$
+    | /worlds/(own|custom)\.py$ | /(home_service|supervision)/command\.py$
     """,
     re.VERBOSE,
 )
@@ -76,31 +75,13 @@ def counts(root: Path) -> Counts:
         place, text = path.relative_to(root).as_posix(), path.read_text(encoding="utf-8")
         parts = [*_parts(ast.parse(text))] if PROTOCOLS.search(place) else []
         if MECHANISM.search(place):
-            files[place] = len(text.splitlines()), len(_code_lines(text))
+            files[place] = len(text.splitlines()), len(code_lines.numbers_of_code(text))
         elif parts:
             lines = {line for _, first, last in parts for line in range(first, last + 1)}
-            files[place] = len(lines), len(lines & _code_lines(text))
+            files[place] = len(lines), len(lines & code_lines.numbers_of_code(text))
         if place in files and any(GUARD.match(name) for name in _classes(ast.parse(text))):
             guard_files.append(place)
     return Counts(files, sorted(guard_files), circles(root))
-
-
-def _code_lines(text: str) -> Set[int]:
-    """Numbers of the lines with code."""
-    code: Set[int] = set()
-    layout = {
-        tokenize.COMMENT,
-        tokenize.NL,
-        tokenize.NEWLINE,
-        tokenize.INDENT,
-        tokenize.DEDENT,
-        tokenize.ENDMARKER,
-    }
-    for token in tokenize.generate_tokens(io.StringIO(text).readline):
-        is_docstring = token.type == tokenize.STRING and token.line.lstrip().startswith('"""')
-        if token.type not in layout and not is_docstring:
-            code.update(range(token.start[0], token.end[0] + 1))
-    return code
 
 
 def _classes(tree: ast.Module) -> Iterator[str]:

@@ -90,5 +90,5 @@ def test_no_files_import_each_other():
 
 def test_one_file_guards_the_plugins_of_all_packages():
     found = extension_counts.counts(ROOT)
-    assert found.guard_files == ["src/planar/src/planar/extensions/guard.py"]
+    assert found.guard_files == ["src/planar/src/planar/extensions/point.py"]
     assert found.lines[0] <= MOST_EXTENSION_LINES

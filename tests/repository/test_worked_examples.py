@@ -50,9 +50,9 @@ def tree(tmp_path):
     return tmp_path
 
 
-def test_the_page_has_examples_of_a_planner_an_extension_point_a_sensor_a_command_and_a_result():
+def test_the_page_has_examples_of_a_planner_a_check_an_extension_point_a_sensor_a_command_and_a_result():
     names = " ".join(example.name for example in examples())
-    needed = ("planner", "extension point", "sensor", "command", "result.json")
+    needed = ("planner", "check", "extension point", "sensor", "command", "result.json")
     assert all(word in names for word in needed), names
 
 

@@ -81,7 +81,7 @@ def pytest_collect_file(file_path: Path, parent) -> Optional[RosTestFile]:
 
 
 def pytest_report_teststatus(report, config) -> Optional[Tuple[str, str, str]]:
-    """Show what the tests of a file said, and how long they took."""
+    """Show how the tests of a file ended, and how long they took."""
     found = outcome_of(report)
     if found is None:
         return None

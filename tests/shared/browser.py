@@ -213,9 +213,18 @@ class Tab:
         raise AssertionError(f"'{option}' could not be chosen of '{label}', {offered}")
 
     def tick(self, label):
-        """Toggle the checkbox with this label."""
-        wait_until(f"a box {label}", lambda: self._is_stable(_find(label, BOX)))
-        self.click_at(*self._place_of(_find(label, BOX)))
+        """Toggle the checkbox with this label; a click is lost if the box moves meanwhile."""
+        wait_until(f"a box {label}", lambda: self.is_ticked(label) is not None)
+        before = self.is_ticked(label)
+        for _ in range(20):
+            wait_until(f"a box {label} to click", lambda: self._is_stable(_find(label, BOX)))
+            place = self._place_of(_find(label, BOX))
+            if place is not None:
+                self.click_at(*place)
+            with suppress(AssertionError):
+                wait_until("the change", lambda: self.is_ticked(label) != before, 1.0)
+                return
+        raise AssertionError(f"'{label}' could not be toggled")
 
     def value_of(self, label):
         """Return the value of the field with this label."""

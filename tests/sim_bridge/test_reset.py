@@ -10,12 +10,14 @@ import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus, GoalStatusArray
 from geometry_msgs.msg import PoseWithCovarianceStamped
+from goals import goal_at
 from ground_truth import wait_for_ground_truth
-from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
+from move_base_msgs.msg import MoveBaseAction
 from nav_msgs.msg import Odometry
 from std_srvs.srv import Empty
 from waiting import wait_until
 
+from planar import Pose2
 from planar_ros.messages.transforms import Transforms
 
 NODES = ("/sim_bridge", "/robot_state_publisher", "/map_server", "/amcl", "/move_base")
@@ -58,11 +60,7 @@ class TestReset(unittest.TestCase):
         """Send a goal with a new client: an old one keeps its state across a jump of time."""
         client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
         wait_until("move_base", lambda: client.wait_for_server(rospy.Duration(0.1)), PATIENCE_SECONDS)
-        goal = MoveBaseGoal()
-        goal.target_pose.header.frame_id = "map"
-        goal.target_pose.pose.position.x, goal.target_pose.pose.position.y = x, y
-        goal.target_pose.pose.orientation.w = 1.0
-        client.send_goal(goal)
+        client.send_goal(goal_at(Pose2(x, y)))
         return client
 
     def set_off_for(self, x, y):

@@ -8,8 +8,9 @@ import actionlib
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
+from goals import goal_at
 from ground_truth import wait_for_ground_truth
-from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
+from move_base_msgs.msg import MoveBaseAction
 from visualization_msgs.msg import Marker
 
 from evaluation.consumers.referee import Referee
@@ -76,10 +77,7 @@ class NavigationTest(unittest.TestCase):
         self.assertEqual(self.referee.mission_record.collisions, [])
 
     def _send(self, pose):
-        goal = MoveBaseGoal()
-        goal.target_pose.header.frame_id = "map"
-        goal.target_pose.pose = pose2_to_msg(pose)
-        self.client.send_goal(goal)
+        self.client.send_goal(goal_at(pose))
 
     def _wait_for_result(self, pose):
         active = (GoalStatus.PENDING, GoalStatus.ACTIVE)

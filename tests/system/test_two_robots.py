@@ -7,15 +7,16 @@ import actionlib
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
+from goals import goal_at
 from ground_truth import wait_for_ground_truth
-from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
+from move_base_msgs.msg import MoveBaseAction
 from nav_msgs.msg import Odometry
 from std_msgs.msg import String
 from waiting import wait_until
 
 from planar import Pose2
 from planar_ros.calls.actions import server_is_ready
-from planar_ros.messages.conversion import LaserScanArrays, pose2_from_msg, pose2_to_msg
+from planar_ros.messages.conversion import LaserScanArrays, pose2_from_msg
 
 WALL_DEADLINE = 120.0
 ARRIVAL_TOLERANCE = 0.25
@@ -35,10 +36,7 @@ class Witness:
         rospy.Subscriber(f"{name}/contacts", String, self._on_contacts, queue_size=100)
 
     def send(self, pose):
-        goal = MoveBaseGoal()
-        goal.target_pose.header.frame_id = "map"
-        goal.target_pose.pose = pose2_to_msg(pose)
-        self.client.send_goal(goal)
+        self.client.send_goal(goal_at(pose))
 
     def is_active(self):
         return self.client.get_state() in (GoalStatus.PENDING, GoalStatus.ACTIVE)

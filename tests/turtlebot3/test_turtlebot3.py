@@ -12,7 +12,8 @@ import rospy
 import rostest
 from gazebo_msgs.msg import ModelStates
 from geometry_msgs.msg import PoseWithCovarianceStamped, Twist
-from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
+from goals import goal_at
+from move_base_msgs.msg import MoveBaseAction
 from sensor_msgs.msg import Imu, JointState, LaserScan
 from turtlebot3_msgs.msg import SensorState, Sound, VersionInfo
 from visualization_msgs.msg import InteractiveMarkerFeedback, InteractiveMarkerInit
@@ -68,9 +69,7 @@ class TurtleBot3Test(unittest.TestCase):
         )
         client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
         wait_until("move_base", lambda: server_is_ready(client), BRING_UP_SECONDS)
-        goal = MoveBaseGoal()
-        goal.target_pose.header.frame_id, goal.target_pose.pose = "map", pose2_to_msg(GOAL)
-        self.assertEqual(client.send_goal_and_wait(goal, rospy.Duration(200.0)), 3)
+        self.assertEqual(client.send_goal_and_wait(goal_at(GOAL), rospy.Duration(200.0)), 3)
         error = self._truth().distance_to(GOAL)
         print(f"true distance from the goal: {error:.3f} m")
         self.assertLess(error, 0.25)

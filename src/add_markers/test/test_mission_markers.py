@@ -90,7 +90,7 @@ def mission_with_cube_at(x):
 
 def test_an_object_that_is_set_down_is_shown_beside_the_robot_and_stays_there(markers):
     subscriber = Subscriber()
-    markers._publisher.impl.add_connection(subscriber)
+    markers._publisher.connect(subscriber)
     mission = mission_with_cube_at(1.0)
     markers._follow(copy.deepcopy(mission))
     mission.objects[0].is_carried = True

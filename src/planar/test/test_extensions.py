@@ -1,8 +1,9 @@
 """The mechanism of extension points: views, guard, registry, checks of classes."""
 
+import copy
 import sys
 import types
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
 
 import numpy as np
@@ -11,7 +12,6 @@ import pytest
 from planar import OccupancyGrid, PlanarError, Pose2
 from planar.config.parameters import parameter
 from planar.extensions import (
-    CallRules,
     ExtensionPoint,
     InvalidAnswer,
     Plugin,
@@ -58,8 +58,11 @@ CONTRACT: ExtensionPoint[Painter] = ExtensionPoint(
     "painter",
     Painter,
     "test_package.painters",
-    CallRules(PainterError, (OutOfPaint,), {"paint": _checked}, frozenset({"canvas"})),
-    PainterSettings,
+    PainterError,
+    passes=(OutOfPaint,),
+    answers={"paint": _checked},
+    writable=frozenset({"canvas"}),
+    settings=PainterSettings,
     parameter="painter",
 )
 
@@ -169,7 +172,15 @@ def test_only_the_arguments_that_a_contract_names_can_be_written_to():
     plugin = CONTRACT.make("mine.painters/Careful", PainterSettings(4))
     assert plugin.paint(canvas, wall=grid()) == 6
     assert (canvas == 4).all()
-    assert (plugin.strokes, class_of(plugin)) == (2, Careful)
+    assert class_of(plugin) is Careful
+
+
+def test_attributes_are_those_of_the_plugin_and_those_of_the_protocol_may_be_missing():
+    plugin = CONTRACT.make("mine.painters/Careful", PainterSettings(4))
+    lazy = replace(CONTRACT, is_lazy=True).make("mine.painters/Broken", PainterSettings())
+    assert (plugin.strokes, plugin.shade, lazy.strokes) == (2, 4, None)
+    assert not (hasattr(plugin, "brushes") or hasattr(lazy, "shade"))
+    assert copy.copy(plugin).paint(np.zeros(6), grid()) == 6
 
 
 @pytest.mark.parametrize(

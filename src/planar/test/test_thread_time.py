@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from planar.extensions import MAX_CALL_SECONDS, CallRules, ExtensionPoint, PluginError, thread_time
+from planar.extensions import MAX_CALL_SECONDS, ExtensionPoint, PluginError, thread_time
 from planar.extensions.thread_time import MAX_AGE, Stopwatch
 
 SPINNING = "while True: pass"
@@ -26,7 +26,7 @@ class Worker:
         time.sleep(seconds)
 
 
-CONTRACT = ExtensionPoint("worker", Worker, "workers", CallRules(max_seconds=MAX_CALL_SECONDS))
+CONTRACT = ExtensionPoint("worker", Worker, "workers", max_seconds=MAX_CALL_SECONDS)
 
 
 @pytest.fixture

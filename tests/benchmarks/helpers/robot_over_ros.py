@@ -27,7 +27,7 @@ from move_base_lite.parameters import merged
 from planar import OccupancyGrid, Pose2, Twist2
 from planar_ros.calls.actions import server_is_ready
 from planar_ros.messages.conversion import LaserScanArrays, grid_to_msg, pose2_to_msg, transform_msg
-from sim_bridge import Simulation
+from sim_bridge import Episode, Simulation
 
 START_SECONDS = 60.0
 SETTLING_SECONDS = 1.0
@@ -88,6 +88,7 @@ class RobotOverRos:
         """Continue with another simulation, whose time follows that of the previous one."""
         self._time_offset = self.now if self._time_offset else SETTLING_SECONDS
         self._simulation, self._command = simulation, None
+        self._episode = Episode(simulation, simulation.step_seconds)
         self._wall = time.monotonic()
         self.step()
         while self.observation.scan is None:
@@ -108,7 +109,7 @@ class RobotOverRos:
     def step(self) -> None:
         """Step by one period of the odometry."""
         command, self._command = self._command, None
-        self.observation = step_result = self._simulation.step(command)
+        self.observation = step_result = self._episode.step(command)
         stamp = rospy.Time.from_sec(self.now)
         odometry = step_result.odometry
         odom_in_map = step_result.base_in_world @ odometry.base_in_odom.inverse()

@@ -28,6 +28,13 @@ STRICT_COMPAT_SETTINGS: Dict[str, Any] = {
 }
 
 
+def _check_plugins(settings: "LocalizerSettings") -> None:
+    for parameter_name, contract in (("motion_plugin", MOTION_MODEL), ("sensor_plugin", SENSOR_MODEL)):
+        name = getattr(settings, parameter_name)
+        if name:
+            contract.check_name(parameter_name, name)
+
+
 @dataclass(frozen=True)
 class LocalizerSettings:
     """Parameters of the particle filter and its models; metres and radians."""
@@ -216,10 +223,7 @@ class LocalizerSettings:
         if self.strict_compat:
             for name, value in STRICT_COMPAT_SETTINGS.items():
                 object.__setattr__(self, name, value)
-        if self.motion_plugin:
-            MOTION_MODEL.check_name("motion_plugin", self.motion_plugin)
-        if self.sensor_plugin:
-            SENSOR_MODEL.check_name("sensor_plugin", self.sensor_plugin)
+        _check_plugins(self)
         check(
             self.min_particles <= self.max_particles,
             "min_particles",

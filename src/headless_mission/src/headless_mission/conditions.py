@@ -6,6 +6,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, Mapping, Optional, Sequence
 
+from headless_mission.encoding import Encoding, ExactValues
 from move_base_lite import NavigatorSettings, load_settings
 from move_base_lite.control import check_local_planner
 from planar import Pose2
@@ -25,6 +26,7 @@ class EpisodeConditions:
         start: Initial pose of the robot in the world, which is also the initial estimate.
         mission_start: Simulated time from which on the mission may start [s], as over ROS, where nodes
             connect first; None: as soon as the robot is localized and a client could have connected.
+        encoding: Precision of the values that pass between components.
     """
 
     planner: str = ""
@@ -33,6 +35,7 @@ class EpisodeConditions:
     simulation: SimulationSettings = SimulationSettings()
     start: Pose2 = Pose2()
     mission_start: Optional[float] = None
+    encoding: Encoding = ExactValues()
 
     def navigation(self, config: Path) -> NavigatorSettings:
         """Read a preset and apply these conditions to it.

@@ -10,6 +10,7 @@ from amcl_lite import Localizer
 from amcl_lite.config import InitialPose, NodeSettings
 from amcl_lite.errors import LocalizationError
 from evaluation.presets import LOCALIZATION_CONFIG
+from headless_mission.encoding import Encoding, ExactValues
 from move_base_lite import PoseHistory
 from planar import OccupancyGrid, Pose2, Scan
 from planar.config.parameters import settings_from_yaml
@@ -25,6 +26,7 @@ class LocalizationHooks(EpisodeHooks):
         start: Initial estimate.
         poses: Poses from odometry, which receive the estimate.
         on_fit: Called with the time and the fit of each scan.
+        encoding: Precision of scans and estimates.
     """
 
     def __init__(
@@ -34,12 +36,13 @@ class LocalizationHooks(EpisodeHooks):
         start: Pose2,
         poses: PoseHistory,
         on_fit: Callable[[float, float], None] = lambda stamp, fit: None,
+        encoding: Encoding = ExactValues(),
     ):
         self._settings = _settings()
         self._localizer = Localizer(grid, self._settings, np.random.default_rng(seed))
         if start != Pose2():
             self._localizer.set_pose(start, InitialPose().covariance)
-        self._poses, self._on_fit = poses, on_fit
+        self._poses, self._on_fit, self._encoding = poses, on_fit, encoding
         self._valid_until = 0.0
         self._fits: List[float] = []
 
@@ -47,11 +50,13 @@ class LocalizationHooks(EpisodeHooks):
         scan = step.scan
         if scan is not None:
             with suppress(LocalizationError):  # the node logs it and continues, too
-                self._localize(scan)
+                self._localize(self._encoding.scan(scan))
 
     def at_tick(self, episode: Episode, step: StepResult) -> None:
         """Publish the estimate: it takes effect at the next tick."""
-        self._poses.set_odom_in_map(self._localizer.odom_in_map, self._valid_until)
+        odom_in_map = self._localizer.odom_in_map
+        if odom_in_map is not None:
+            self._poses.set_odom_in_map(self._encoding.pose(odom_in_map), self._valid_until)
         for fit in self._fits:
             self._on_fit(step.stamp, fit)
         self._fits.clear()

@@ -51,16 +51,18 @@ class HeadlessMission:
         conditions: EpisodeConditions = EpisodeConditions(),
     ):
         start, settings = conditions.start, conditions.navigation(NAVIGATION_CONFIG)
+        encoding, grid = conditions.encoding, conditions.encoding.grid(grid)
         faults, robot = FaultInjector(conditions.faults, seed), _without_unused_sensors(robot)
         self._simulation = simulation = Simulation(
             world, robot, conditions.simulation, seed, start, faults.wrappers
         )
-        navigation = NavigationHooks(settings, grid)
-        client = MoveBaseClient(navigation)
+        navigation = NavigationHooks(settings, grid, encoding)
+        client = MoveBaseClient(navigation, encoding)
         self._errand = errand = ErrandHooks(mission, navigation, client, conditions.mission_start)
         self._observer = MissionObserver(simulation, navigation, errand, parcel)
         boxes = BoxHooks(simulation, grid, errand)
-        localization = LocalizationHooks(grid, seed, start, navigation.poses, errand.driver.add_fit)
+        on_fit = errand.driver.add_fit
+        localization = LocalizationHooks(grid, seed, start, navigation.poses, on_fit, encoding)
         # What localization computes takes effect at the next tick, as it comes last; the client, which comes
         # first, passes on what was sent at the last one.
         hooks = client, navigation, errand, self._observer, boxes, localization

@@ -4,6 +4,7 @@ from typing import Optional
 
 import numpy as np
 
+from headless_mission.encoding import Encoding, ExactValues
 from move_base_lite import (
     Decision,
     MoveBase,
@@ -28,6 +29,7 @@ class NavigationHooks(EpisodeHooks):
     Args:
         settings: Parameters of move_base.
         grid: Static map; None for none.
+        encoding: Precision of what the robot measures.
 
     Attributes:
         poses: Poses of the robot, as in tf.
@@ -37,8 +39,13 @@ class NavigationHooks(EpisodeHooks):
         period: Control period [s].
     """
 
-    def __init__(self, settings: NavigatorSettings, grid: Optional[OccupancyGrid] = None):
-        self.poses = PoseHistory()
+    def __init__(
+        self,
+        settings: NavigatorSettings,
+        grid: Optional[OccupancyGrid] = None,
+        encoding: Encoding = ExactValues(),
+    ):
+        self.poses, self._encoding = PoseHistory(), encoding
         self.move_base = MoveBase(settings, self.poses, grid)
         self.result = TickResult(Decision(Status.IDLE))
         self.diagnosis = ""
@@ -53,11 +60,12 @@ class NavigationHooks(EpisodeHooks):
     def after_step(self, episode: Episode, step: StepResult) -> None:
         if Odometer.name in step.readings:
             odometry = step.odometry
-            self.poses.add_odometry(step.stamp, odometry.base_in_odom)
-            self.move_base.add_odometry(step.stamp, odometry.base_in_odom, odometry.twist)
+            base_in_odom = self._encoding.pose(odometry.base_in_odom)
+            self.poses.add_odometry(step.stamp, base_in_odom)
+            self.move_base.add_odometry(step.stamp, base_in_odom, odometry.twist)
         scan = step.scan
         if scan is not None:
-            self.move_base.add_scan(scan)
+            self.move_base.add_scan(self._encoding.scan(scan))
 
     def at_tick(self, episode: Episode, step: StepResult) -> None:
         self.result = result = self.move_base.tick(step.stamp, episode.latency)
@@ -70,13 +78,14 @@ class MoveBaseClient(EpisodeHooks):
 
     Args:
         navigation: move_base in the episode.
+        encoding: Precision of goals and feedback.
 
     Attributes:
         robot: Robot pose in the map from the latest feedback; None before the first.
     """
 
-    def __init__(self, navigation: NavigationHooks):
-        self._navigation = navigation
+    def __init__(self, navigation: NavigationHooks, encoding: Encoding = ExactValues()):
+        self._navigation, self._encoding = navigation, encoding
         self.robot: Optional[Pose2] = None
         self._goal: Optional[Pose2] = None
         self._outcome: Optional[DriveOutcome] = None
@@ -85,7 +94,7 @@ class MoveBaseClient(EpisodeHooks):
         """Receive what move_base sent at the last tick, and deliver what was sent to it."""
         result = self._navigation.result
         if result.state is not None and result.decision.status is not Status.IDLE:
-            self.robot = result.state.base_in_map
+            self.robot = self._encoding.pose(result.state.base_in_map)
         status = GOAL_STATUS.get(result.decision.status)
         if status is not None and self._goal is None:  # else a new goal has replaced the one that ended
             self._outcome = DriveOutcome(status, result.decision.text)
@@ -95,7 +104,7 @@ class MoveBaseClient(EpisodeHooks):
 
     def send(self, goal: Pose2) -> None:
         """Send a goal, which replaces any earlier one."""
-        self._goal, self._outcome = goal, None
+        self._goal, self._outcome = self._encoding.pose(goal), None
 
     def outcome(self) -> Optional[DriveOutcome]:
         """Return the outcome of the last goal once; None while it is active and afterwards."""

@@ -6,12 +6,11 @@ import sys
 import tempfile
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, List, Mapping
+from typing import TYPE_CHECKING, List
 
 import numpy as np
 
-from evaluation.verdict import collision
-from laboratory.tasks.task import COLLISION, FAILURE, SUCCESS, TIMEOUT, RunTrace
+from laboratory.tasks.task import RunTrace, outcome_of
 from laboratory.worlds.source import Arena
 from planar import SettingsError
 from planar.files.reading import read_text
@@ -60,17 +59,8 @@ def _read_trace(folder: Path, seconds: float) -> RunTrace:
     end = truth[0, 0] + result.get("simulated_seconds", np.inf)
     truth, estimate = (poses[poses[:, 0] <= end] for poses in (truth, estimate))
     collisions = result.get("collisions", ())
-    return RunTrace(
-        _outcome(result, collisions, seconds), result["reason"], truth, _errors(truth, estimate), collisions
-    )
-
-
-def _outcome(result: Mapping[str, Any], collisions: Any, seconds: float) -> str:
-    if result["success"]:
-        return SUCCESS
-    if collision(collisions):
-        return COLLISION
-    return TIMEOUT if result.get("simulated_seconds", 0.0) > seconds else FAILURE
+    outcome = outcome_of(result["success"], collisions, result.get("simulated_seconds", 0.0), seconds)
+    return RunTrace(outcome, result["reason"], truth, _errors(truth, estimate), collisions)
 
 
 def _errors(truth: np.ndarray, estimate: np.ndarray) -> np.ndarray:

@@ -56,6 +56,7 @@ def _name(number: int, place: NamedPlace) -> Marker:
     marker.scale.z = TEXT_HEIGHT
     marker.pose.position.x = place.pose.x
     marker.pose.position.y = place.pose.y + place.radius + TEXT_HEIGHT
+    marker.pose.position.z = TEXT_HEIGHT
     return marker
 
 

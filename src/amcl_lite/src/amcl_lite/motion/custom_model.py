@@ -10,7 +10,7 @@ import numpy as np
 from amcl_lite.custom_model import finite_numbers
 from amcl_lite.errors import LocalizationError
 from planar import Pose2
-from planar.extensions import CallRules, ExtensionPoint
+from planar.extensions import ExtensionPoint
 from planar.geometry.limits import MAX_COORDINATE
 
 
@@ -41,8 +41,5 @@ def _checked(moved: Any, poses: np.ndarray, *given: Any) -> np.ndarray:
 
 
 CONTRACT: ExtensionPoint[MotionModel] = ExtensionPoint(
-    "motion model",
-    MotionModel,
-    "amcl_lite.motion_models",
-    CallRules(LocalizationError, answers={"moved": _checked}),
+    "motion model", MotionModel, "amcl_lite.motion_models", LocalizationError, answers={"moved": _checked}
 )

@@ -6,7 +6,7 @@ from typing import Optional, Tuple
 import numpy as np
 import rospy
 
-from amcl_lite.config import NodeSettings
+from amcl_lite.config import InitialPose, NodeSettings
 from amcl_lite.localizer import Localizer
 from amcl_lite.ros.pose_checkpoint import read_initial_pose
 from planar import OccupancyGrid, Pose2
@@ -32,7 +32,8 @@ class LockedLocalizer:
         """
         localizer = Localizer(grid, self.settings, self._rng)
         start = read_initial_pose()
-        localizer.set_pose(start.pose, start.covariance)
+        if start != InitialPose():  # where it starts by itself: particles are drawn once, as without ROS
+            localizer.set_pose(start.pose, start.covariance)
         with self.lock:
             if self._pending_pose is not None:
                 localizer.set_pose(*self._pending_pose)

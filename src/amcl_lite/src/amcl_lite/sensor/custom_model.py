@@ -14,7 +14,7 @@ import numpy as np
 from amcl_lite.custom_model import finite_numbers
 from amcl_lite.errors import LocalizationError
 from planar import OccupancyGrid
-from planar.extensions import CallRules, ExtensionPoint
+from planar.extensions import ExtensionPoint
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +59,8 @@ CONTRACT: ExtensionPoint[SensorModel] = ExtensionPoint(
     "sensor model",
     SensorModel,
     "amcl_lite.sensor_models",
-    CallRules(LocalizationError, answers={"log_likelihoods": _checked}),
+    LocalizationError,
+    answers={"log_likelihoods": _checked},
 )
 
 

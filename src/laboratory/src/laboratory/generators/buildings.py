@@ -12,7 +12,7 @@ from laboratory.generators.floor_plan import Rectangle, WallSegment
 from laboratory.generators.furniture import STANDING_CLEARANCE
 from laboratory.tasks.shortest_paths import PASSAGE_CLEARANCE, connected_regions
 from laboratory.worlds.solids import FLOOR, wall
-from laboratory.worlds.source import Arena
+from laboratory.worlds.source import Arena, GeneratedWorlds
 from planar import FREE, OccupancyGrid, Pose2, SettingsError
 from planar.config.yaml_table import Table
 from planar.geometry.distance_field import distance_field
@@ -43,7 +43,7 @@ class BuildingLayout:
 
 
 @dataclass(frozen=True)
-class BuildingGenerator:
+class BuildingGenerator(GeneratedWorlds):
     """World source with a different building for each seed; the robot starts at the origin.
 
     Subclasses define the class attributes and ``layout``.
@@ -68,12 +68,6 @@ class BuildingGenerator:
 
     def arena(self, seed: int) -> Arena:
         return _arena(self, seed)
-
-    def files(self) -> Tuple[Path, ...]:
-        return ()
-
-    def arena_number(self, seed: int) -> int:
-        return seed
 
 
 @lru_cache(maxsize=4)

@@ -4,12 +4,12 @@ import math
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import List, Tuple
+from typing import List
 
 import numpy as np
 
 from laboratory.worlds.solids import FLOOR, post, wall
-from laboratory.worlds.source import Arena
+from laboratory.worlds.source import Arena, GeneratedWorlds
 from planar import Pose2
 from planar.config.yaml_table import Table
 from sim_bridge.scripted_trajectories import ScriptedTrajectory
@@ -25,7 +25,7 @@ _STREAM = 45
 
 
 @dataclass(frozen=True)
-class CrossingCylinders:
+class CrossingCylinders(GeneratedWorlds):
     """World source with different moving cylinders for each seed.
 
     Attributes:
@@ -44,12 +44,6 @@ class CrossingCylinders:
 
     def arena(self, seed: int) -> Arena:
         return _arena(self, seed)
-
-    def files(self) -> Tuple[Path, ...]:
-        return ()
-
-    def arena_number(self, seed: int) -> int:
-        return seed
 
 
 @lru_cache(maxsize=64)

@@ -14,7 +14,7 @@ from headless_mission import (
     parcel_for,
 )
 from laboratory.tasks.shortest_paths import shortest_path_length
-from laboratory.tasks.task import COLLISION, FAILURE, SUCCESS, TIMEOUT, RunConditions, RunTrace
+from laboratory.tasks.task import RunConditions, RunTrace, outcome_of
 from laboratory.worlds.source import Arena
 from pick_objects import Mission, errand_mission, load_mission
 from planar import OccupancyGrid, Pose2, SettingsError
@@ -93,7 +93,9 @@ def run_mission(
     episode = HeadlessMission(*inputs, seed=seed, parcel=parcel, conditions=_conditions(scenario))
     run = episode.run(scenario.seconds)
     return RunTrace(
-        _outcome(run, scenario.seconds),
+        outcome_of(
+            run.verdict.success, run.mission_record.collisions, run.simulated_seconds, scenario.seconds
+        ),
         _reason(run),
         run.trajectory,
         run.localization_error,
@@ -113,14 +115,6 @@ def _grid_of(arena: Arena) -> OccupancyGrid:
     if arena.grid is None:
         raise SettingsError(f"{arena.title}: the task needs a world with a map")
     return arena.grid
-
-
-def _outcome(run: EpisodeResult, seconds: float) -> str:
-    if run.verdict.success:
-        return SUCCESS
-    if collision(run.mission_record.collisions):
-        return COLLISION
-    return TIMEOUT if run.simulated_seconds > seconds else FAILURE
 
 
 def _reason(run: EpisodeResult) -> str:

@@ -76,6 +76,22 @@ class RunConditions(Protocol):
     def seconds(self) -> float: ...
 
 
+def outcome_of(success: bool, collisions: Sequence[str], simulated_seconds: float, limit: float) -> str:
+    """Return the outcome of a mission.
+
+    Args:
+        success: Whether the verdict is a success.
+        collisions: What the robot collided with.
+        simulated_seconds: Duration of the run [s].
+        limit: Time limit [s].
+    """
+    if success:
+        return SUCCESS
+    if collisions:
+        return COLLISION
+    return TIMEOUT if simulated_seconds > limit else FAILURE
+
+
 class Task(Protocol):
     """A task in an arena. Runs with equal scenario and seed are equal to the last bit."""
 

@@ -10,7 +10,6 @@ from planar import PlanarError
 from planar.config.settings import settings_from
 from planar.config.yaml_table import Table
 from planar.extensions import (
-    CallRules,
     ExtensionPoint,
     InvalidAnswer,
     PluginError,
@@ -43,7 +42,9 @@ CONTRACT: ExtensionPoint[WorldGenerator] = ExtensionPoint(
     "world generator",
     WorldGenerator,
     "laboratory.worlds",
-    CallRules(WorldError, (PlanarError,), {"arena": _checked}),
+    WorldError,
+    passes=(PlanarError,),
+    answers={"arena": _checked},
     requirements=_requirements,
 )
 

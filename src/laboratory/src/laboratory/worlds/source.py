@@ -48,3 +48,13 @@ class WorldSource(Protocol):
 
     def arena_number(self, seed: int) -> int:
         """Return a number that is equal for seeds with the same world."""
+
+
+class GeneratedWorlds:
+    """Base of the sources that generate another world from each seed."""
+
+    def files(self) -> Tuple[Path, ...]:
+        return ()
+
+    def arena_number(self, seed: int) -> int:
+        return seed

@@ -22,7 +22,7 @@ from move_base_lite.errors import ControlPluginFailed, NavigationError
 from move_base_lite.trajectory_samples import TrajectorySamples
 from planar import Pose2, Twist2
 from planar.deprecation import deprecated_names, renamed_fields
-from planar.extensions import MAX_CALL_SECONDS, CallRules, ExtensionPoint, InvalidAnswer
+from planar.extensions import MAX_CALL_SECONDS, ExtensionPoint, InvalidAnswer
 
 # Relative tolerance of the speed limits, for rounding.
 ROUNDING = 1e-3
@@ -129,14 +129,12 @@ CONTRACT: ExtensionPoint[LocalPlanner] = ExtensionPoint(
     "local planner",
     LocalPlanner,
     "move_base_lite.local_planners",
-    CallRules(
-        ControlPluginFailed,
-        (NavigationError,),
-        {"follow": _checked},
-        max_seconds=MAX_CALL_SECONDS,
-        is_lazy=True,
-    ),
-    ControllerSettings,
+    ControlPluginFailed,
+    passes=(NavigationError,),
+    answers={"follow": _checked},
+    max_seconds=MAX_CALL_SECONDS,
+    is_lazy=True,
+    settings=ControllerSettings,
     parameter="base_local_planner",
 )
 __getattr__ = deprecated_names(__name__, {"Situation": "ControlContext", "Exploration": "TrajectorySamples"})

@@ -28,7 +28,7 @@ from move_base_lite.errors import NavigationError, PluginFailed
 from planar import OccupancyGrid, Pose2
 from planar.config.parameters import parameter
 from planar.deprecation import deprecated_names
-from planar.extensions import MAX_CALL_SECONDS, CallRules, ExtensionPoint
+from planar.extensions import MAX_CALL_SECONDS, ExtensionPoint
 
 
 @dataclass(frozen=True)
@@ -185,8 +185,11 @@ CONTRACT: ExtensionPoint[Layer] = ExtensionPoint(
     "costmap layer",
     Layer,
     "move_base_lite.costmap_layers",
-    CallRules(PluginFailed, (NavigationError,), writable=frozenset({"costs"}), max_seconds=MAX_CALL_SECONDS),
-    LayerSettings,
-    _requirements,
+    PluginFailed,
+    passes=(NavigationError,),
+    writable=frozenset({"costs"}),
+    max_seconds=MAX_CALL_SECONDS,
+    settings=LayerSettings,
+    requirements=_requirements,
 )
 __getattr__ = deprecated_names(__name__, {"Placement": "CostmapPlacement", "Site": "LayerContext"})

@@ -18,7 +18,7 @@ import numpy as np
 from move_base_lite.costmap import CostmapWindow
 from move_base_lite.errors import NavigationError, PlanningPluginFailed
 from planar.config.parameters import Interval, at_least, check_parameters, parameter
-from planar.extensions import MAX_CALL_SECONDS, CallRules, ExtensionPoint, InvalidAnswer
+from planar.extensions import MAX_CALL_SECONDS, ExtensionPoint, InvalidAnswer
 
 ORIENTATIONS = (
     "of the poses: 0 none, 1 forward (GlobalPlanner's), 2 interpolated, 3 forward then interpolated, "
@@ -143,14 +143,12 @@ CONTRACT: ExtensionPoint[GlobalPlanner] = ExtensionPoint(
     "global planner",
     GlobalPlanner,
     "move_base_lite.global_planners",
-    CallRules(
-        PlanningPluginFailed,
-        (NavigationError,),
-        {"plan": _checked},
-        max_seconds=MAX_CALL_SECONDS,
-        is_lazy=True,
-    ),
-    PlannerSettings,
-    _requirements,
+    PlanningPluginFailed,
+    passes=(NavigationError,),
+    answers={"plan": _checked},
+    max_seconds=MAX_CALL_SECONDS,
+    is_lazy=True,
+    settings=PlannerSettings,
+    requirements=_requirements,
     parameter="base_global_planner",
 )

@@ -15,7 +15,7 @@ from typing import Any, Callable, Optional, Protocol
 from move_base_lite.costmap import LayeredCostmap
 from move_base_lite.errors import NavigationError, PluginFailed
 from planar import Pose2, Twist2
-from planar.extensions import MAX_CALL_SECONDS, CallRules, ExtensionPoint, InvalidAnswer
+from planar.extensions import MAX_CALL_SECONDS, ExtensionPoint, InvalidAnswer
 
 
 @dataclass(frozen=True)
@@ -88,15 +88,13 @@ CONTRACT: ExtensionPoint[RecoveryBehavior] = ExtensionPoint(
     "recovery behaviour",
     RecoveryBehavior,
     "move_base_lite.recovery_behaviors",
-    CallRules(
-        PluginFailed,
-        (NavigationError,),
-        {"step": _checked},
-        writable=frozenset({"context"}),
-        max_seconds=MAX_CALL_SECONDS,
-        is_lazy=True,
-    ),
-    RecoverySettings,
+    PluginFailed,
+    passes=(NavigationError,),
+    answers={"step": _checked},
+    writable=frozenset({"context"}),
+    max_seconds=MAX_CALL_SECONDS,
+    is_lazy=True,
+    settings=RecoverySettings,
 )
 
 

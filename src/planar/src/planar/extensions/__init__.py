@@ -3,19 +3,17 @@
 An extension point is one file, its protocol: the class whose methods a plugin implements, the types of their
 arguments and answers, and an ``ExtensionPoint`` with what the caller relies on. A plugin is found by its
 dotted name or entry point (``loading``), its arguments are read-only views (``views``), its answers are
-checked and its failures named (``guard``). A ``Registry`` adds the shipped implementations, ``check`` the
+checked and its failures named (``point``). A ``Registry`` adds the shipped implementations, ``check`` the
 checks of a contract from the command line.
 """
 
-from planar.extensions.guard import MAX_CALL_SECONDS, CallRules, Guard, InvalidAnswer, class_of
 from planar.extensions.loading import PluginError, load_object
-from planar.extensions.point import ExtensionPoint
+from planar.extensions.point import MAX_CALL_SECONDS, ExtensionPoint, Guard, InvalidAnswer, class_of
 from planar.extensions.registry import Plugin, Registry, SelectedPlugins, registries_of
 from planar.extensions.sources import source_files
 
 __all__ = [
     "MAX_CALL_SECONDS",
-    "CallRules",
     "ExtensionPoint",
     "Guard",
     "InvalidAnswer",

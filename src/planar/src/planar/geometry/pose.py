@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any, Mapping
+from typing import Any, Mapping, Tuple
 
 import numpy as np
 
@@ -110,3 +110,13 @@ class Twist2:
     def is_finite(self) -> bool:
         """Return whether neither speed is NaN or infinite."""
         return math.isfinite(self.v) and math.isfinite(self.omega)
+
+
+def quaternion_zw(yaw: float) -> Tuple[float, float]:
+    """Return z and w of the quaternion of a yaw angle [rad]; its x and y are 0."""
+    return math.sin(yaw / 2.0), math.cos(yaw / 2.0)
+
+
+def yaw_of_quaternion(x: float, y: float, z: float, w: float) -> float:
+    """Return the yaw of a quaternion, which need not be normalized [rad]."""
+    return math.atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z)

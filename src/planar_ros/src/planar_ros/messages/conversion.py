@@ -1,6 +1,5 @@
 """ROS messages to planar types and back."""
 
-import math
 import struct
 from typing import Sequence
 
@@ -15,6 +14,7 @@ from std_msgs.msg import Header
 
 from planar import OccupancyGrid, Pose2, Scan, Twist2
 from planar.geometry.limits import MAX_COORDINATE
+from planar.geometry.pose import quaternion_zw, yaw_of_quaternion
 from planar_ros.messages.validation import MessageError, check_twist
 
 # Message types for subscribers and publishers whose `ranges` and `data` are numpy arrays instead of tuples.
@@ -36,13 +36,12 @@ class SetMapArrays(SetMap):
 
 def yaw_of(quaternion) -> float:
     """Return the yaw of a geometry_msgs/Quaternion, which need not be normalized [rad]."""
-    x, y, z, w = quaternion.x, quaternion.y, quaternion.z, quaternion.w
-    return math.atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z)
+    return yaw_of_quaternion(quaternion.x, quaternion.y, quaternion.z, quaternion.w)
 
 
 def quaternion_of(yaw: float) -> Quaternion:
     """Return the quaternion of a yaw angle [rad]."""
-    return Quaternion(0.0, 0.0, math.sin(yaw / 2.0), math.cos(yaw / 2.0))
+    return Quaternion(0.0, 0.0, *quaternion_zw(yaw))
 
 
 def pose2_from_msg(pose) -> Pose2:

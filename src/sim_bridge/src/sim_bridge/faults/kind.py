@@ -13,7 +13,7 @@ import numpy as np
 
 from planar import Pose2, Scan, Twist2
 from planar.deprecation import deprecated_names
-from planar.extensions import CallRules, ExtensionPoint, InvalidAnswer
+from planar.extensions import ExtensionPoint, InvalidAnswer
 from sim_bridge.errors import FaultError
 from sim_bridge.scene import Scene
 from sim_bridge.sensors.odometry import Odometry
@@ -174,15 +174,13 @@ CONTRACT: ExtensionPoint[FaultKind] = ExtensionPoint(
     "fault",
     FaultKind,
     "sim_bridge.faults",
-    CallRules(
-        FaultError,
-        answers={
-            "scan": _checked("scan", Scan),
-            "odometry": _checked("odometry", Odometry),
-            "command": _checked("command", Twist2),
-            "wheel_speeds": _checked_speeds,
-        },
-        writable=frozenset({"context"}),
-    ),
+    FaultError,
+    answers={
+        "scan": _checked("scan", Scan),
+        "odometry": _checked("odometry", Odometry),
+        "command": _checked("command", Twist2),
+        "wheel_speeds": _checked_speeds,
+    },
+    writable=frozenset({"context"}),
     requirements=_requirements,
 )

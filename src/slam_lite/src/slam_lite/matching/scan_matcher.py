@@ -12,7 +12,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from planar import PlanarError, Pose2
-from planar.extensions import CallRules, ExtensionPoint, InvalidAnswer
+from planar.extensions import ExtensionPoint, InvalidAnswer
 from slam_lite.matching.correlative import SearchWindow, search_exhaustively
 from slam_lite.matching.local_map import LocalMap, Match
 from slam_lite.matching.refinement import refine
@@ -108,10 +108,7 @@ def _problem_of(match: Any) -> str:
 
 
 CONTRACT: ExtensionPoint[ScanMatcher] = ExtensionPoint(
-    "scan matcher",
-    ScanMatcher,
-    "slam_lite.scan_matchers",
-    CallRules(MatchingError, answers={"match": _checked}),
+    "scan matcher", ScanMatcher, "slam_lite.scan_matchers", MatchingError, answers={"match": _checked}
 )
 
 
