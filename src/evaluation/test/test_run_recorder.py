@@ -18,7 +18,7 @@ from evaluation.events import (
     StateUpdated,
     TruthUpdated,
 )
-from planar import OccupancyGrid, Pose2
+from planar import OccupancyGrid, PlanarError, Pose2
 
 RATE = 20
 
@@ -95,6 +95,17 @@ def test_the_last_map_is_converted_at_the_end_only(recorded):
     events.publish(MapPublished(0.0, lambda: pytest.fail("converted")))
     events.publish(MapPublished(1.0, lambda: grid))
     assert recorder.record().grid is grid
+
+
+def test_a_map_that_cannot_be_read_is_left_out_with_a_warning(recorded):
+    def unreadable():
+        raise PlanarError("invalid map: 3 x 3 cells with 1 values")
+
+    recorder, events = recorded
+    events.publish(MapPublished(1.5, unreadable))
+    record = recorder.record()
+    assert record.grid is None
+    assert record.warnings == [(1.5, "report", "no map: invalid map: 3 x 3 cells with 1 values")]
 
 
 def test_warnings_are_kept_and_information_is_not(recorded):

@@ -2,10 +2,12 @@
 
 import os
 import signal
+import sqlite3
 import threading
 from dataclasses import replace
 
 import pytest
+from distributed import LocalCluster
 
 from laboratory import commands
 from laboratory.campaign import Campaign, ScenarioRun, Workers, campaign
@@ -95,6 +97,55 @@ def test_an_unreadable_results_file_is_named(tmp_path):
     path.write_text("nothing of this kind " * 100)
     with pytest.raises(ResultsError, match=f"{path}: file is not a database"):
         ResultStore(path)
+
+
+def test_a_damaged_results_file_is_not_said_to_be_intact(alone, tmp_path):
+    path = tmp_path / "results.sqlite"
+    store = ResultStore(path)
+    for result in alone:
+        store.add(result)
+    store.close()
+    content = bytearray(path.read_bytes())
+    content[4096:] = bytes(len(content) - 4096)
+    path.write_bytes(content)
+    with pytest.raises(ResultsError, match=f"{path}: .*; the file is damaged: move it away") as caught:
+        ResultStore(path).results(alone[0].digest, alone[0].version)
+    assert "intact" not in str(caught.value)
+
+
+def test_a_stored_run_without_an_outcome_is_repeated_and_other_empty_values_are_defaults(alone, tmp_path):
+    store = ResultStore(tmp_path / "results.sqlite")
+    for result in alone[:3]:
+        store.add(result)
+    with sqlite3.connect(str(tmp_path / "results.sqlite")) as connection:
+        connection.execute("UPDATE results SET outcome = NULL WHERE seed = 0")
+        connection.execute("UPDATE results SET collisions = NULL, track = NULL, reason = NULL WHERE seed = 1")
+    digest, version = alone[0].digest, alone[0].version
+    assert store.completed(version) == {(digest, 1), (digest, 2)}
+    found = store.results(digest, version)
+    assert found == [replace(alone[1], collisions=0, track=b"", reason=""), alone[2]]
+    store.close()
+
+
+@pytest.mark.parametrize("deaths", [1, 2, 3])
+def test_a_worker_that_dies_while_it_starts_is_started_again(deaths, monkeypatch):
+    starts = []
+
+    def start(**_):
+        starts.append(1)
+        if len(starts) <= deaths:
+            raise RuntimeError("Nanny failed to start.")
+        return LocalCluster(n_workers=0, processes=False, dashboard_address=None)
+
+    monkeypatch.setattr("laboratory.campaign.workers.LocalCluster", start)
+    if deaths < 3:
+        with Workers(1).client() as client:
+            assert client.scheduler_info()["workers"] == {}
+    else:
+        with pytest.raises(WorkersError, match="cannot be started: Nanny failed to start"), Workers(
+            1
+        ).client():
+            pass
 
 
 def test_a_missing_scheduler_is_reported(monkeypatch):

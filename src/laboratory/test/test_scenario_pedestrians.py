@@ -131,7 +131,8 @@ def test_an_old_results_file_gets_the_new_columns(tmp_path):
         connection.execute(
             f"CREATE TABLE results ({', '.join(columns)}, PRIMARY KEY (digest, seed, version))"
         )
-        connection.execute("INSERT INTO results (digest, seed, version) VALUES ('d', 1, 'v')")
+        row = "('d', 1, 'v', 'success', 'fine')"
+        connection.execute(f"INSERT INTO results (digest, seed, version, outcome, reason) VALUES {row}")
     store = ResultStore(path)
     store.add(RunResult("d", 2, "v", "success", "fine", social_work=1.5))
     assert [run.social_work for run in store.results("d", "v")] == [None, 1.5]

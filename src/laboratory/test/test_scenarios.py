@@ -1,3 +1,4 @@
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -141,6 +142,75 @@ def test_a_digest_changes_with_a_file_of_the_scenario(tmp_path):
     before = read_scenario(path).digest()
     zones.write_text(zones.read_text().replace("x: 2.0", "x: 1.9"))
     assert read_scenario(path).digest() != before
+
+
+OWN_PLANNER = """
+from my_planning import costs
+from .tools.search import Search
+import numpy
+
+class MyPlanner(Search):
+    pass
+"""
+
+
+@pytest.fixture
+def own_plugins(tmp_path, monkeypatch):
+    """Packages with plugins on Python's path, as somebody would write them."""
+    root = tmp_path / "python"
+    for name, text in {
+        "my_planning/__init__.py": "",
+        "my_planning/planner.py": OWN_PLANNER,
+        "my_planning/costs.py": "WEIGHT = 1.0",
+        "my_planning/tools/__init__.py": "from my_helpers import clip",
+        "my_planning/tools/search.py": "class Search: pass",
+        "my_planning/weights.npz": "1",
+        "my_helpers.py": "def clip(): pass",
+        "my_planning/unused.py": "",
+        "network.onnx": "1",
+    }.items():
+        (root / name).parent.mkdir(parents=True, exist_ok=True)
+        (root / name).write_text(text)
+    monkeypatch.syspath_prepend(str(root))
+    yield root
+    for name in [each for each in sys.modules if each.startswith("my_")]:
+        del sys.modules[name]
+
+
+PLUGINS = {
+    "a local planner": {"planner": "my_planning.planner/MyPlanner"},
+    "a global planner": {"parameters": {"base_global_planner": "my_planning.planner/MyPlanner"}},
+    "a recovery behavior": {
+        "parameters": {"recovery_behaviors": [{"name": "mine", "type": "my_planning.planner/MyPlanner"}]}
+    },
+    "a layer": {
+        "parameters": {"local_costmap": {"plugins": [{"name": "m", "type": "my_planning.planner/MyPlanner"}]}}
+    },
+}
+
+
+@pytest.mark.parametrize("plugin", PLUGINS.values(), ids=list(PLUGINS))
+def test_a_digest_changes_with_each_file_of_a_plugin(own_plugins, plugin, tmp_path):
+    scenario = replace(read_scenario(written(tmp_path, ALL_KEYS)), **plugin)
+    digests = {scenario.digest()}
+    for changed in ("planner.py", "costs.py", "tools/__init__.py", "tools/search.py", "weights.npz"):
+        path = own_plugins / "my_planning" / changed
+        path.write_text(path.read_text() + "\n# changed")
+        digests.add(scenario.digest())
+    (own_plugins / "my_helpers.py").write_text("def clip(): return 1")
+    digests.add(scenario.digest())
+    assert len(digests) == 7
+    (own_plugins / "my_planning/unused.py").write_text("# changed")
+    assert scenario.digest() in digests
+
+
+def test_a_digest_changes_with_a_file_that_a_parameter_names(own_plugins, tmp_path):
+    network = own_plugins / "network.onnx"
+    parameters = {"MyPlanner": {"network": str(network)}}
+    scenario = read_scenario(written(tmp_path, ALL_KEYS)).with_parameters(parameters)
+    before = scenario.digest()
+    network.write_text("2")
+    assert scenario.digest() != before
 
 
 @pytest.mark.parametrize("path", sorted(FOLDER.glob("home*.yaml")), ids=lambda path: path.stem)

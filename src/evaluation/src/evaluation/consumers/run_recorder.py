@@ -20,7 +20,7 @@ from evaluation.events import (
     StateUpdated,
     TruthUpdated,
 )
-from planar import Pose2
+from planar import OccupancyGrid, PlanarError, Pose2
 from planar.maps.places import NamedPlace
 from run_report import (
     CollisionEvent,
@@ -78,8 +78,20 @@ class RunRecorder:
         record.truth, record.velocity, record.pace = truth[:, :4], truth[:, [0, 4, 5]], truth[:, [0, 6]]
         record.estimate = self._estimate.rows()
         record.odometry = _from_start(self._odometry.rows(), record.truth)
-        record.grid = None if self._map is None else self._map.read()
+        record.grid = self._last_grid()
         return record
+
+    def _last_grid(self) -> Optional[OccupancyGrid]:
+        """Return the last map; None, and a warning once, if it cannot be read."""
+        if self._map is None:
+            return None
+        try:
+            return self._map.read()
+        except PlanarError as error:
+            warning = LoggedWarning(self._map.stamp, "report", f"no map: {error}")
+            if warning not in self._record.warnings:
+                self._record.warnings.append(warning)
+            return None
 
     def _on_truth(self, event: TruthUpdated) -> None:
         if not self._truth.is_due(event.stamp):

@@ -62,7 +62,18 @@ class Workers:
     @contextmanager
     def _local_cluster(self) -> Iterator[Client]:
         with _ignoring_sigint():
-            cluster = LocalCluster(
+            cluster = self._start_cluster()
+        try:
+            with Client(cluster, set_as_default=False) as client:
+                yield client
+        finally:
+            with suppress(Exception):  # the processes are terminated in any case
+                cluster.close(timeout=10)
+
+    def _start_cluster(self, attempts: int = MAX_WORKER_DEATHS) -> LocalCluster:
+        """Start the processes, again if one dies while it starts."""
+        try:
+            return LocalCluster(
                 n_workers=self.count or len(os.sched_getaffinity(0)),
                 threads_per_worker=1,
                 processes=True,
@@ -74,12 +85,11 @@ class Workers:
                 lifetime_stagger=LIFETIME_STAGGER,
                 lifetime_restart=True,
             )
-        try:
-            with Client(cluster, set_as_default=False) as client:
-                yield client
-        finally:
-            with suppress(Exception):  # the processes are terminated in any case
-                cluster.close(timeout=10)
+        except Exception as error:  # Dask's exceptions have no common class
+            if attempts <= 1:
+                text = str(error) or type(error).__name__
+                raise WorkersError(f"the worker processes cannot be started: {text}") from None
+        return self._start_cluster(attempts - 1)
 
     @contextmanager
     def _remote_scheduler(self) -> Iterator[Client]:

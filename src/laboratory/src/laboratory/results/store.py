@@ -4,7 +4,7 @@ import sqlite3
 from contextlib import contextmanager
 from dataclasses import astuple, fields
 from pathlib import Path
-from typing import Any, Dict, Iterator, List, Optional, Set, Tuple
+from typing import Any, Dict, Iterator, List, Optional, Sequence, Set, Tuple
 
 from laboratory.errors import ResultsError
 from laboratory.results.result import RunResult
@@ -50,9 +50,12 @@ class ResultStore:
 
     def results(self, digest: str, version: str) -> List[RunResult]:
         """Return the results of a scenario, ordered by seed."""
-        query = f"SELECT {', '.join(COLUMNS)} FROM results WHERE digest = ? AND version = ? ORDER BY seed"
+        query = (
+            f"SELECT {', '.join(COLUMNS)} FROM results "
+            "WHERE digest = ? AND version = ? AND outcome IS NOT NULL ORDER BY seed"
+        )
         with self._raising_results_error():
-            return [RunResult(*row) for row in self._connection.execute(query, (digest, version))]
+            return [_result(row) for row in self._connection.execute(query, (digest, version))]
 
     def versions(self) -> List[str]:
         """Return the versions of all results, the latest last."""
@@ -81,4 +84,13 @@ class ResultStore:
         try:
             yield
         except (sqlite3.Error, OSError) as error:
+            if type(error) is sqlite3.DatabaseError:  # the file itself, not an operation on it
+                advice = f"move it away, or try: sqlite3 {self._path} .recover"
+                raise ResultsError(f"{self._path}: {error}; the file is damaged: {advice}") from None
             raise ResultsError(f"{self._path}: {error}; results stored so far are intact") from None
+
+
+def _result(row: Sequence[Any]) -> RunResult:
+    """Return the result of a row; columns without a value have their defaults."""
+    values = {name: value for name, value in zip(COLUMNS, row) if value is not None}
+    return RunResult(**{"reason": "", **values})

@@ -8,12 +8,14 @@ from pathlib import Path
 from typing import Any, List, Sequence, Set
 from xml.etree import ElementTree
 
+from planar.extensions.sources import DATA_SUFFIXES
+
 SOURCES = Path(__file__).resolve().parents[4]
 # Their code and that of their dependencies computes results; scenarios name planners of the second.
 ROOTS = ("laboratory", "plugin_examples")
 # Packages that only show runs.
 DISPLAYS = ("cockpit", "run_report")
-ENDINGS = (".py", ".yaml", ".urdf", ".xacro")
+ENDINGS = (".py", ".urdf", ".xacro", *DATA_SUFFIXES)
 ENDINGS_OVER_ROS = (".launch", ".msg", ".srv", ".action")
 DEPENDENCIES = ("depend", "exec_depend")
 LIBRARIES = ("numpy", "scipy", "numba", "pybullet")

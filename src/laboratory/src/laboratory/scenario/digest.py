@@ -4,11 +4,12 @@ import hashlib
 import json
 from dataclasses import fields, is_dataclass
 from pathlib import Path
-from typing import Any, Dict
+from typing import Any, Dict, Iterator, List
 
-from laboratory.results.version import version_over_ros
+from laboratory.results.version import packages, version_over_ros
 from planar import SettingsError
 from planar.extensions import source_files
+from planar.files.reading import is_file
 
 # Fields that do not change a run.
 _IGNORED: Dict[str, Any] = {"name": "", "about": "", "seeds": (), "file": None}
@@ -37,7 +38,7 @@ def scenario_digest(scenario: Any) -> str:
     """Compute a digest that two scenarios share only if their runs are the same.
 
     It covers all values but the name, the description and the seeds, the contents of the scenario's files,
-    and the sources of custom planners, faults and world generators.
+    and the files of custom planners, faults, world generators and all other plugins that its parameters name.
 
     Args:
         scenario: A Scenario.
@@ -50,7 +51,8 @@ def scenario_digest(scenario: Any) -> str:
     """
     values = {**_plain(scenario), **_IGNORED}
     kinds = [_class_name(scenario.world), _class_name(scenario.task)]
-    custom = source_files((scenario.planner, *(fault.kind for fault in scenario.faults)))
+    names = (scenario.planner, *(fault.kind for fault in scenario.faults), *_texts(scenario.parameters))
+    custom = (*source_files(names, packages()), *_files_named(scenario.parameters))
     files = [_content(path) for path in (*scenario.world.files(), *scenario.task.files(), *custom)]
     software = [version_over_ros()] if scenario.is_over_ros else []
     text = json.dumps([kinds, files, software, values], sort_keys=True, default=_without_path)
@@ -72,6 +74,20 @@ def _plain(value: Any) -> Any:
     if isinstance(value, dict):
         return {key: _plain(each) for key, each in value.items()}
     return value
+
+
+def _texts(value: Any) -> Iterator[str]:
+    """Yield all texts in nested parameters."""
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, (list, tuple, dict)):
+        for each in value.values() if isinstance(value, dict) else value:
+            yield from _texts(each)
+
+
+def _files_named(parameters: Any) -> List[Path]:
+    """Return the files that parameters name, such as weights."""
+    return [Path(text) for text in _texts(parameters) if text and is_file(Path(text))]
 
 
 def _class_name(value: Any) -> str:

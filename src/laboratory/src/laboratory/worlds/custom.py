@@ -4,6 +4,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, Iterable, Protocol, Tuple
 
+from laboratory.results.version import packages
 from laboratory.worlds.source import Arena
 from planar import PlanarError
 from planar.config.settings import settings_from
@@ -65,7 +66,7 @@ class CustomWorlds:
 
     def files(self) -> Tuple[Path, ...]:
         """Return its source files: changed code makes stored results invalid."""
-        return source_files((self.name,))
+        return source_files((self.name,), packages())
 
     def arena_number(self, seed: int) -> int:
         return seed

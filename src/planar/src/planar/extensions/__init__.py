@@ -7,9 +7,10 @@ checked and its failures named (``point``). A ``Registry`` adds the shipped impl
 checks of a contract from the command line.
 """
 
-from planar.extensions.loading import PluginError, load_object, source_files
+from planar.extensions.loading import PluginError, load_object
 from planar.extensions.point import MAX_CALL_SECONDS, ExtensionPoint, Guard, InvalidAnswer, class_of
 from planar.extensions.registry import Plugin, Registry, SelectedPlugins, registries_of
+from planar.extensions.sources import source_files
 
 __all__ = [
     "MAX_CALL_SECONDS",

@@ -1,10 +1,8 @@
 """Objects by name: ``my_package.my_module/MyPlanner``, or an entry point of an installed package."""
 
 import importlib
-import importlib.util
 from importlib import metadata
-from pathlib import Path
-from typing import Any, Iterable, Optional, Tuple
+from typing import Any, Tuple
 
 from planar.errors import SettingsError
 
@@ -36,21 +34,6 @@ def load_object(name: str) -> Any:
     if not (module and attribute):
         raise PluginError(f"{name}: must be like my_package.my_module/MyClass")
     return _from_module(name, module, attribute)
-
-
-def source_files(names: Iterable[str]) -> Tuple[Path, ...]:
-    """Return the existing source files of the modules of dotted plugin names, in order."""
-    modules = [name.rpartition("/")[0] for name in names]
-    files = [_file_of(module) for module in modules if "." in module]
-    return tuple(Path(file) for file in files if file)
-
-
-def _file_of(module: str) -> Optional[str]:
-    try:
-        spec = importlib.util.find_spec(module)
-    except (ImportError, ValueError):  # no such package, or an invalid name
-        return None
-    return spec.origin if spec is not None else None
 
 
 def _from_module(name: str, module: str, attribute: str) -> Any:
