@@ -32,6 +32,7 @@ class ReportTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as parent:
             code, folder, output = _run(parent, "--goals", "1.0 0.5 0.0")
             self.assertEqual(code, 0, output)
+            self.assertNotIn("warning", output)
             self.assertEqual({path.name for path in folder.iterdir()}, FILES)
             result = _checked_result(folder)
             self.assertEqual(result["missing"], [])

@@ -17,6 +17,7 @@ from planar_ros.messages.conversion import (
     grid_from_msg,
 )
 
+# Wall time without a map after which its lack is a warning [s], and between two requests [s].
 FETCH_ALARM_SECONDS = 15.0
 FETCH_RETRY_SECONDS = 0.5
 
@@ -56,12 +57,14 @@ class MapSource:
             return
         rospy.loginfo("Requesting the map...")
         static_map = rospy.ServiceProxy("static_map", GetMapArrays)
+        alarm_time = time.monotonic() + FETCH_ALARM_SECONDS  # nodes start in any order
         while not rospy.is_shutdown():
             try:
                 self._install(static_map().map)
                 return
             except rospy.ServiceException:
-                rospy.logwarn_throttle(FETCH_ALARM_SECONDS, "Request for map failed; trying again...")
+                if time.monotonic() > alarm_time:
+                    rospy.logwarn_throttle(FETCH_ALARM_SECONDS, "Request for map failed; trying again...")
                 time.sleep(FETCH_RETRY_SECONDS)
 
     def _on_map(self, message):

@@ -198,7 +198,7 @@ class MoveBaseNode:
             if decision.status is Status.ABORTED:
                 rospy.logerr(decision.text)
             self._goals.finish(decision.status, decision.text)
-        elif decision.text:
+        elif decision.text and self._is_up:  # before that, the ReadinessMonitor reports what is missing
             rospy.logwarn_throttle(WARN_SECONDS, decision.text)
 
     def _on_shutdown(self):
