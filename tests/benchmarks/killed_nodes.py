@@ -103,8 +103,6 @@ def run_with_kill(killed: str, seed: int) -> KillResult:
 
 def run_under_way(leftovers: Leftovers, seed: int, makes_map: bool = False) -> Tuple[Graph, Path]:
     """Start a run, wait until the robot drives, and join its graph; return the graph and its folder."""
-    import rospy
-
     options = ("--speed", str(SPEED), "--seed", str(seed))
     if makes_map:
         graph = Graph(leftovers, "map_home.sh", *options)
@@ -113,11 +111,18 @@ def run_under_way(leftovers: Leftovers, seed: int, makes_map: bool = False) -> T
         graph = Graph(leftovers, "home_service.sh", "--mission", str(ROOT / "map/mission.yaml"), *options)
         graph.wait_for("(driving to)")
     folder = next((Path(leftovers.environment["TMPDIR"]) / RUNS).iterdir())
+    join_graph(folder)
+    return graph, folder
+
+
+def join_graph(folder: Path) -> None:
+    """Make this process a node of the graph with this run folder."""
+    import rospy
+
     uri = re.search(r"ROS_MASTER_URI=(http://[\d.:]+)", (folder / "log/roslaunch.log").read_text())
     assert uri is not None
     os.environ.update(ROS_MASTER_URI=uri[1], ROS_IP="127.0.0.1")
     rospy.init_node("benchmark", anonymous=True, disable_signals=True)
-    return graph, folder
 
 
 def reason_in(folder: Path) -> str:
