@@ -99,7 +99,7 @@ def test_an_unreadable_results_file_is_named(tmp_path):
         ResultStore(path)
 
 
-def test_a_damaged_results_file_is_not_said_to_be_intact(alone, tmp_path):
+def test_a_damaged_results_file_is_not_reported_as_intact(alone, tmp_path):
     path = tmp_path / "results.sqlite"
     store = ResultStore(path)
     for result in alone:

@@ -156,7 +156,7 @@ class MyPlanner(Search):
 
 @pytest.fixture
 def own_plugins(tmp_path, monkeypatch):
-    """Packages with plugins on Python's path, as somebody would write them."""
+    """Packages with plugins on Python's path, as a user would write them."""
     root = tmp_path / "python"
     for name, text in {
         "my_planning/__init__.py": "",

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, List, Sequence, Set
 from xml.etree import ElementTree
 
-from planar.extensions.sources import DATA_SUFFIXES
+from laboratory.plugin_files import DATA_SUFFIXES
 
 SOURCES = Path(__file__).resolve().parents[4]
 # Their code and that of their dependencies computes results; scenarios name planners of the second.

@@ -6,9 +6,9 @@ from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any, Dict, Iterator, List
 
+from laboratory.plugin_files import source_files
 from laboratory.results.version import packages, version_over_ros
 from planar import SettingsError
-from planar.extensions import source_files
 from planar.files.reading import is_file
 
 # Fields that do not change a run.

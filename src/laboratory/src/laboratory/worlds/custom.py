@@ -4,6 +4,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, Iterable, Protocol, Tuple
 
+from laboratory.plugin_files import source_files
 from laboratory.results.version import packages
 from laboratory.worlds.source import Arena
 from planar import PlanarError
@@ -13,7 +14,6 @@ from planar.extensions import (
     ExtensionPoint,
     InvalidAnswer,
     PluginError,
-    source_files,
 )
 from sim_bridge import WorldError
 

@@ -10,7 +10,6 @@ checks of a contract from the command line.
 from planar.extensions.loading import PluginError, load_object
 from planar.extensions.point import MAX_CALL_SECONDS, ExtensionPoint, Guard, InvalidAnswer, class_of
 from planar.extensions.registry import Plugin, Registry, SelectedPlugins, registries_of
-from planar.extensions.sources import source_files
 
 __all__ = [
     "MAX_CALL_SECONDS",
@@ -24,5 +23,4 @@ __all__ = [
     "class_of",
     "load_object",
     "registries_of",
-    "source_files",
 ]
