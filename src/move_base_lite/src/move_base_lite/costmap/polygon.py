@@ -51,7 +51,7 @@ class Polygon:
         col_min, row_min = map(int, np.floor(corners.min(axis=0)))
         col_max, row_max = map(int, np.ceil(corners.max(axis=0)))
         bounds = window.cut(CellBounds(row_min, row_max, col_min, col_max))
-        _fill(costs, corners, bounds, cost)
+        _fill(costs, corners, tuple(bounds), cost)
         return bounds
 
 

@@ -185,7 +185,7 @@ class ObstacleLayer(Layer):
 
     def apply(self, costs: np.ndarray, window: CostmapWindow, bounds: CellBounds) -> None:
         if self._settings.combination_method != IGNORE_LAYER:
-            _combine(costs, self._costs, bounds, self._settings.combination_method == OVERWRITE)
+            _combine(costs, self._costs, tuple(bounds), self._settings.combination_method == OVERWRITE)
 
     def clear_outside(self, bounds: CellBounds, window: CostmapWindow) -> CellBounds:
         rows, cols = bounds.slices
