@@ -3,10 +3,11 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from move_base_lite.check import maps
 from move_base_lite.control import Plan
-from move_base_lite.control.mppi.rollout import CostWeights, MotionLimits, costs_of, drive
+from move_base_lite.control.mppi.rollout import CostWeights, MotionLimits, costs_of, drive, is_unobstructed
 from move_base_lite.control.mppi.scene import scene_of
 from planar import Pose2, Twist2
 
@@ -28,12 +29,29 @@ def test_parallel_rollouts_cost_the_same_as_single_ones():
     assert (costs == alone).all()
 
 
+@pytest.mark.parametrize(
+    "pose, people, expected",
+    [
+        pytest.param(Pose2(1.5, 1.5, 0.0), [], True, id="open"),
+        pytest.param(Pose2(1.5, 1.5, 0.0), [(3.5, 3.5, 0.0, 0.0, 0.25)], False, id="person"),
+        pytest.param(Pose2(0.5 + maps.RADIUS + 0.1, 1.5, 1.57), [], False, id="beside a wall"),
+        pytest.param(Pose2(1.2, 1.5, 3.14), [], False, id="towards a wall"),
+    ],
+)
+def test_unobstructed_controls_stay_away_from_obstacles_and_people(pose, people, expected):
+    problem, start = problem_at(pose, np.array(people).reshape(-1, 5))
+    assert is_unobstructed(np.tile((0.3, 0.0), (STEPS, 1)), start, problem) == expected
+
+
 def problem_beside_a_wall_and_a_person():
-    room = maps.check_map("open")
-    pose, twist = Pose2(0.5 + maps.RADIUS + 0.1, 1.3, 2.0), Twist2(0.3, 0.0)
-    context = replace(
-        maps.context_of(room.costmap, pose, twist), dynamic_obstacles=np.array([(2.0, 1.9, -0.3, -0.1, 0.25)])
+    return problem_at(
+        Pose2(0.5 + maps.RADIUS + 0.1, 1.3, 2.0), people=np.array([(2.0, 1.9, -0.3, -0.1, 0.25)])
     )
+
+
+def problem_at(pose, people):
+    room, twist = maps.check_map("open"), Twist2(0.3, 0.0)
+    context = replace(maps.context_of(room.costmap, pose, twist), dynamic_obstacles=people)
     plan = Plan(np.linspace((pose.x, pose.y), room.goal_xy, 20), 4.0)
     scene = scene_of(context, plan, use_global_costmap=False)
     limits = MotionLimits(maps.PERIOD, -0.3, 0.5, 1.5, 0.5, 2.0, 0.25, 0.3)

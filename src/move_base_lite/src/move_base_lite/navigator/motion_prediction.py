@@ -1,6 +1,9 @@
 """Prediction of the robot's motion during the latency of a command."""
 
+import math
 from typing import Tuple
+
+import numba
 
 from planar import Pose2, Twist2
 
@@ -21,17 +24,29 @@ def predict_motion(
     Returns:
         Predicted pose in the present base frame, and velocity at that pose.
     """
-    moved, dt = Pose2(), seconds / STEPS
-    for _ in range(STEPS if seconds > 0.0 else 0):
-        after = Twist2(
-            _towards(twist.v, active_command.v, acceleration.v * dt),
-            _towards(twist.omega, active_command.omega, acceleration.omega * dt),
-        )
-        v, turned = 0.5 * (twist.v + after.v), 0.5 * (twist.omega + after.omega) * dt
-        moved = moved @ Pose2(0.0, 0.0, 0.5 * turned) @ Pose2(v * dt, 0.0, 0.5 * turned)
-        twist = after
-    return moved, twist
+    if seconds <= 0.0:
+        return Pose2(), twist
+    limits = acceleration.v, acceleration.omega
+    x, y, yaw, v, omega = _predicted(
+        twist.v, twist.omega, active_command.v, active_command.omega, *limits, seconds
+    )
+    return Pose2(x, y, yaw), Twist2(v, omega)
 
 
-def _towards(value: float, target: float, max_change: float) -> float:
+@numba.njit(cache=True)
+def _predicted(v, omega, commanded_v, commanded_omega, acceleration, turn_acceleration, seconds):
+    x, y, yaw, dt = 0.0, 0.0, 0.0, seconds / STEPS
+    for _ in range(STEPS):
+        v_after = _towards(v, commanded_v, acceleration * dt)
+        omega_after = _towards(omega, commanded_omega, turn_acceleration * dt)
+        distance, turned = 0.5 * (v + v_after) * dt, 0.5 * (omega + omega_after) * dt
+        x += distance * math.cos(yaw + 0.5 * turned)
+        y += distance * math.sin(yaw + 0.5 * turned)
+        yaw += turned
+        v, omega = v_after, omega_after
+    return x, y, yaw, v, omega
+
+
+@numba.njit(cache=True)
+def _towards(value, target, max_change):
     return min(max(target, value - max_change), value + max_change)

@@ -3,7 +3,7 @@
 import math
 from typing import Optional
 
-from planar import Pose2, Twist2
+from planar import Pose2, Twist2, wrap
 
 # Commanded distance [m] over which evidence decays, and evidence [m] that cannot be chance.
 DECAY_DISTANCE, MIN_EVIDENCE = 2.0, 1.0
@@ -41,15 +41,15 @@ class WheelMonitor:
             base_in_odom: Pose from odometry.
             command: Velocity command that the robot follows.
         """
-        moved, seconds = self._base.inverse() @ base_in_odom, now - self._stamp
+        before, seconds = self._base, now - self._stamp
         self._base, self._stamp = base_in_odom, now
         if self._stuck_since is not None and now - self._stuck_since > RETRY_AFTER:
             self._stuck_since = None
             self._reset()
         if not 0.0 < seconds < MAX_INTERVAL:
             return
-        turn_rate = moved.yaw / seconds
-        stands = max(math.hypot(moved.x, moved.y) / seconds, abs(turn_rate)) < STANDING
+        turn_rate = wrap(base_in_odom.yaw - before.yaw) / seconds
+        stands = max(before.distance_to(base_in_odom) / seconds, abs(turn_rate)) < STANDING
         if not stands and abs(turn_rate) < MAX_TURN_RATE:
             self._update_sums(command, turn_rate, seconds)
         has_evidence = self._stuck_since is None and self._distance > MIN_EVIDENCE

@@ -74,8 +74,10 @@ class Engine:
     def __init__(self, rate: int, gravity: float):
         self._bullet = BulletClient()
         self._registry = BodyRegistry()
+        # Friction is limited in two directions apart, as by default in Gazebo (ODE's pyramid model); Bullet's
+        # cone costs half as much again.
         self._bullet.setPhysicsEngineParameter(
-            numSolverIterations=SOLVER_ITERATIONS, deterministicOverlappingPairs=1
+            numSolverIterations=SOLVER_ITERATIONS, deterministicOverlappingPairs=1, enableConeFriction=0
         )
         self.set_gravity(gravity)
         # Masses of the links that gravity does not act on.

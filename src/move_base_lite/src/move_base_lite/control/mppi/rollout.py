@@ -22,6 +22,8 @@ FREE_MARGIN_CELLS = 1.5
 SMALL_ANGLE = 0.2
 # Minimum speed in the obstacle cost, so that standing near an obstacle costs too [m/s].
 MIN_EXPOSURE_SPEED = 0.1
+# Part of the samples that is evaluated while the mean of the last period is unobstructed.
+UNOBSTRUCTED_DIVISOR = 2
 # Position uncertainty of a dynamic obstacle [m], and its growth with prediction time [m/s].
 UNCERTAINTY, UNCERTAINTY_GROWTH = 0.1, 0.1
 
@@ -125,8 +127,10 @@ def best_controls(
     Returns:
         Controls (N, 2), cost, poses (N + 1, 3) and speeds (N, 2); the cost is inf if all samples collide.
     """
-    scene, limits, weights = _unpack(clearance, to_go, outline_xy, dynamic_obstacles, numbers)
-    samples, problem = (noise, mean, extra_controls), (scene, limits, weights)
+    problem = _unpack(clearance, to_go, outline_xy, dynamic_obstacles, numbers)
+    if is_unobstructed(mean, start, problem):
+        noise = noise[: max(1, len(noise) // UNOBSTRUCTED_DIVISOR)]
+    samples = noise, mean, extra_controls
     costs, average, total = costs_of(samples, start, problem), np.zeros(mean.shape), 0.0
     best = np.argmin(costs)
     lowest, poses, speeds = costs[best], np.empty((len(mean) + 1, 3)), np.empty(mean.shape)
@@ -162,6 +166,27 @@ def _unpack(clearance, to_go, outline_xy, dynamic_obstacles, n):
     scene = MppiScene(clearance, to_go, outline_xy, dynamic_obstacles, n[0], n[1], n[2], n[3], n[4])
     limits = MotionLimits(n[5], n[6], n[7], n[8], n[9], n[10], n[11], n[12])
     return scene, limits, CostWeights(n[13], n[14], n[15], n[16], n[17], n[18], n[19], n[20])
+
+
+@numba.njit(cache=True)
+def is_unobstructed(controls, start, problem):
+    """Return whether no obstacle adds to the cost of a rollout, nor can one that moves.
+
+    Args:
+        controls: (N, 2), controls v, omega.
+        start: (5,) of x, y, yaw, v, omega.
+        problem: Tuple of MppiScene, MotionLimits and CostWeights.
+    """
+    if problem[0].dynamic_obstacles.shape[0] > 0:
+        return False
+    motions = np.empty(1, MOTION)
+    shared = _start_rollout(motions, len(controls), start, problem)
+    motion = motions[0]
+    for step in range(shared.steps):
+        requested = controls[step, 0], controls[step, 1]
+        if motion.clearance < shared.exact_below or not _advance(motion, step, requested, shared, problem):
+            return False
+    return motion.clearance >= shared.exact_below
 
 
 @_inlined
