@@ -1,7 +1,9 @@
 """Settings that are accepted and have no effect: parameters, tags and fields of other people's files."""
 
-from typing import Dict, Iterator
+from dataclasses import dataclass
+from typing import Any, Dict, Iterator, Tuple
 
+from planar.config.parameters import DynamicParameter
 from planar.errors import SettingsError
 
 
@@ -34,13 +36,15 @@ class SettingsWithoutEffect:
     def __len__(self) -> int:
         return len(self._texts)
 
-    def summary(self, see: str) -> str:
+    def summary(self, see: str, unknown: int = 0) -> str:
         """Return the line for the start of a program.
 
         Args:
             see: Where the settings are listed, e.g. ``the lines above``.
+            unknown: Number of settings that are not known at all, which count, too.
         """
-        return f"{len(self)} setting{'s' * (len(self) != 1)} without effect, see {see}"
+        count = len(self) + unknown
+        return f"{count} setting{'s' * (count != 1)} without effect, see {see}"
 
     def refuse(self) -> None:
         """Refuse the settings, as a strict program does.
@@ -50,3 +54,20 @@ class SettingsWithoutEffect:
         """
         if self._texts:
             raise SettingsError("\n".join([*self, "remove them, or do without strict"]))
+
+
+@dataclass(frozen=True)
+class IneffectiveParameter(DynamicParameter):
+    """Official parameter that is accepted without effect; ``meaning`` is the reason.
+
+    Attributes:
+        fulfilled: Values that ask for what happens anyway; ``default`` is one, too.
+        is_dynamic: Whether the official dynamic_reconfigure offers it.
+    """
+
+    fulfilled: Tuple[Any, ...] = ()
+    is_dynamic: bool = True
+
+    def is_fulfilled_by(self, value: Any) -> bool:
+        """Whether a value asks for nothing that is not done."""
+        return value == self.default or value in self.fulfilled

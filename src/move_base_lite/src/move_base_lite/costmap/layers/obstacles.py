@@ -2,19 +2,21 @@
 
 import math
 from dataclasses import dataclass
-from typing import Dict, List, Tuple
+from typing import List, Tuple
 
 import numba
 import numpy as np
 
+from move_base_lite.costmap.combination import combine
 from move_base_lite.costmap.costs import FREE, LETHAL, UNKNOWN
 from move_base_lite.costmap.layer import CostmapPlacement, Layer, LayerContext, LayerSettings
 from move_base_lite.costmap.observation import Observation
 from move_base_lite.costmap.polygon import Polygon
 from move_base_lite.costmap.window import NO_CELLS, CellBounds, CostmapWindow, union
 from planar import Pose2
-from planar.config.parameters import POSITIVE, DynamicParameter, at_least, check_parameters, parameter
+from planar.config.parameters import POSITIVE, at_least, check_parameters, parameter
 from planar.config.settings import check
+from planar.config.without_effect import IneffectiveParameter
 from planar.extensions import Plugin
 
 DATA_TYPES = ("LaserScan", "PointCloud", "PointCloud2")
@@ -91,16 +93,46 @@ class _LocatedObservation:
     sensor_in_frame: Pose2
 
 
+class _ObservationBuffer:
+    """Observations of one source that count at an update (costmap_2d: ObservationBuffer).
+
+    Attributes:
+        source: Parameters of the source.
+        kept: The newest observation and, for ``observation_persistence``, older ones.
+    """
+
+    def __init__(self, source: SourceSettings):
+        self.source = source
+        self.kept: List[_LocatedObservation] = []
+        self._new: List[_LocatedObservation] = []
+
+    def add(self, located: _LocatedObservation) -> None:
+        """Store an observation until the next update; it replaces older ones unless they persist."""
+        self._new = [*self._new, located] if self.source.observation_persistence > 0.0 else [located]
+
+    def take_new(self) -> bool:
+        """Keep the observations since the last update and drop those that are too old.
+
+        Returns:
+            Whether there was a new one.
+        """
+        new, self._new = self._new, []
+        if not new:
+            return False
+        oldest = new[-1].observation.stamp - self.source.observation_persistence
+        persistent = [*self.kept, *new[:-1]] if self.source.observation_persistence > 0.0 else []
+        self.kept = [each for each in persistent if each.observation.stamp >= oldest] + new[-1:]
+        return True
+
+
 class ObstacleLayer(Layer):
     """Occupied and free cells observed by sensors, aligned with the costmap's window."""
 
     def __init__(self, settings: ObstacleSettings, context: LayerContext):
         self._settings, self._footprint = settings, context.footprint
         self._default = UNKNOWN if settings.track_unknown_space else FREE
-        self._persistent: Dict[str, List[_LocatedObservation]] = {
-            source.topic: [] for source in settings.sources
-        }
-        self._pending: Dict[str, _LocatedObservation] = {}
+        self._buffers = [_ObservationBuffer(source) for source in settings.sources]
+        self._window = context.window
         self._costs = np.full((context.window.rows, context.window.cols), self._default, dtype=np.uint8)
 
     def add_observation(self, observation: Observation, base_in_frame: Pose2) -> None:
@@ -110,47 +142,41 @@ class ObstacleLayer(Layer):
             observation: Beams of one sensor.
             base_in_frame: Robot pose in the costmap's frame when they were measured.
         """
-        if observation.topic in self._persistent:
-            self._pending[observation.topic] = _LocatedObservation(
-                observation, base_in_frame @ observation.sensor_in_base
-            )
+        for buffer in self._buffers:
+            if buffer.source.topic == observation.topic:
+                sensor_in_frame = base_in_frame @ observation.sensor_in_base
+                buffer.add(_LocatedObservation(observation, sensor_in_frame))
 
     def update(self, placement: CostmapPlacement) -> CellBounds:
         """Clear along the beams of all sensors, mark their ends, clear the footprint (see Layer.update)."""
-        window = placement.window
-        self._roll(placement.rows, placement.cols)
-        changed = self._integrate_pending(window)
+        window, changed = placement.window, NO_CELLS
+        has_rolled, received = self._roll(window), [buffer.take_new() for buffer in self._buffers]
+        if has_rolled or True in received:
+            changed = self._integrate_kept(window)
         if self._settings.footprint_clearing_enabled:
             outline_xy = placement.base_in_frame.transform_points(self._footprint.corners_xy)
             changed = union(changed, Polygon(outline_xy).fill(self._costs, window, FREE))
         return changed
 
-    def _integrate_pending(self, window: CostmapWindow) -> CellBounds:
-        changed = NO_CELLS
-        received = [
-            (source, self._pending[source.topic])
-            for source in self._settings.sources
-            if source.topic in self._pending
-        ]
-        for source, new in received:
-            self._integrate(window, source, new, 0.0, source.raytrace_range * source.clearing)
-            reach = max(source.obstacle_range, source.raytrace_range) + window.resolution
-            observed = window.bounds_around(new.sensor_in_frame.x, new.sensor_in_frame.y, reach)
-            changed = union(changed, observed)
-        for source, new in received:
-            for located in self._marking_observations(source, new):
-                self._integrate(window, source, located, source.obstacle_range * source.marking, 0.0)
-        self._pending.clear()
-        return changed
+    def _integrate_kept(self, window: CostmapWindow) -> CellBounds:
+        """Clear along the beams of all observations, then mark their ends.
 
-    def _marking_observations(
-        self, source: SourceSettings, new: _LocatedObservation
-    ) -> List[_LocatedObservation]:
-        """Return the new observation and the older ones that persist."""
-        oldest = new.observation.stamp - source.observation_persistence
-        persistent = [one for one in self._persistent[source.topic] if one.observation.stamp >= oldest]
-        self._persistent[source.topic] = [*persistent, new] if source.observation_persistence > 0.0 else []
-        return [*persistent, new]
+        All of them, not only new ones: what one source has marked last stays until it observes anew, even if
+        another one clears there.
+        """
+        changed = NO_CELLS
+        for buffer in self._buffers:
+            source = buffer.source
+            reach = max(source.obstacle_range, source.raytrace_range) + window.resolution
+            for located in buffer.kept:
+                self._integrate(window, source, located, 0.0, source.raytrace_range * source.clearing)
+                sensor = located.sensor_in_frame
+                changed = union(changed, window.bounds_around(sensor.x, sensor.y, reach))
+        for buffer in self._buffers:
+            for located in buffer.kept:
+                reach = buffer.source.obstacle_range * buffer.source.marking
+                self._integrate(window, buffer.source, located, reach, 0.0)
+        return changed
 
     def _integrate(self, window, source, located, mark_range: float, clear_range: float) -> None:
         observation, sensor = located.observation, located.sensor_in_frame
@@ -172,27 +198,35 @@ class ObstacleLayer(Layer):
             source.inf_is_valid,
         )
 
-    def _roll(self, rows: int, cols: int) -> None:
-        """Move the cells with the window; those that enter it get the default cost."""
+    def _roll(self, window: CostmapWindow) -> bool:
+        """Move the cells with the window; those that enter it get the default cost.
+
+        Returns:
+            Whether the window has moved since the last update of this layer.
+        """
+        before, self._window = self._window, window
+        cols = round((window.origin_x - before.origin_x) / window.resolution)
+        rows = round((window.origin_y - before.origin_y) / window.resolution)
         if not (rows or cols):
-            return
+            return False
         moved = np.full_like(self._costs, self._default)
         height, width = self._costs.shape
         if abs(rows) < height and abs(cols) < width:
             kept = self._costs[max(rows, 0) : height + min(rows, 0), max(cols, 0) : width + min(cols, 0)]
             moved[max(-rows, 0) : height + min(-rows, 0), max(-cols, 0) : width + min(-cols, 0)] = kept
         self._costs = moved
+        return True
 
     def apply(self, costs: np.ndarray, window: CostmapWindow, bounds: CellBounds) -> None:
         if self._settings.combination_method != IGNORE_LAYER:
-            _combine(costs, self._costs, tuple(bounds), self._settings.combination_method == OVERWRITE)
+            combine(costs, self._costs, tuple(bounds), self._settings.combination_method == OVERWRITE)
 
     def clear_outside(self, bounds: CellBounds, window: CostmapWindow) -> CellBounds:
         rows, cols = bounds.slices
         kept = self._costs[rows, cols].copy()
         self._costs.fill(self._default)
-        for observations in self._persistent.values():
-            observations.clear()
+        for buffer in self._buffers:
+            buffer.kept.clear()
         self._costs[rows, cols] = kept
         return window.everything
 
@@ -202,20 +236,10 @@ class ObstacleLayer(Layer):
 
     def take_over(self, before: Layer) -> None:
         assert isinstance(before, ObstacleLayer)
-        self._costs = before._costs
-
-
-@numba.njit(cache=True)
-def _combine(costs, above, bounds, overwrite):
-    """Write the higher of both costs, or the upper one; known costs replace unknown ones."""
-    row_min, row_max, col_min, col_max = bounds
-    for row in range(row_min, row_max):
-        for col in range(col_min, col_max):
-            cost = above[row, col]
-            if cost == UNKNOWN:
-                continue
-            if overwrite or costs[row, col] == UNKNOWN or cost > costs[row, col]:
-                costs[row, col] = cost
+        self._costs, self._window = before._costs, before._window
+        for buffer in self._buffers:
+            same = [each for each in before._buffers if each.source == buffer.source]
+            buffer.kept = same[0].kept if same else []
 
 
 @numba.njit(cache=True)
@@ -253,23 +277,29 @@ def _clear_ray(costs, x0, y0, x1, y1):
             costs[row, col] = FREE
 
 
-# Parameters of costmap_2d's voxel layer; this layer has no voxels.
-FLAT = "(no effect: the layer has no voxels)"
+# Parameters that are read with the sources.
+ELSEWHERE = frozenset({"observation_sources", "obstacle_range", "raytrace_range"})
+TOLERANCE = IneffectiveParameter("transform_tolerance", 0.2, "that of the costmap applies", is_dynamic=False)
+FLAT = "this layer has no voxels, obstacles are flat"
 VOXELS = (
-    DynamicParameter("origin_z", 0.0, f"[m] {FLAT}", 0.0),
-    DynamicParameter("z_resolution", 0.2, f"[m] {FLAT}", 0.0, 50.0),
-    DynamicParameter("z_voxels", 10, FLAT, 0, 16),
-    DynamicParameter("unknown_threshold", 15, FLAT, 0, 16),
-    DynamicParameter("mark_threshold", 0, FLAT, 0, 16),
-)
-# Parameters that are read with the sources, or known and without effect.
-IGNORED = frozenset(
-    {"observation_sources", "transform_tolerance", "obstacle_range", "raytrace_range", "publish_voxel_map"}
-    | {voxel.name for voxel in VOXELS}
+    IneffectiveParameter("origin_z", 0.0, FLAT, 0.0),
+    IneffectiveParameter("z_resolution", 0.2, FLAT, 0.0, 50.0),
+    IneffectiveParameter("z_voxels", 10, FLAT, 0, 16),
+    IneffectiveParameter("unknown_threshold", 15, FLAT, 0, 16),
+    IneffectiveParameter("mark_threshold", 0, FLAT, 0, 16),
+    IneffectiveParameter("publish_voxel_map", False, FLAT, is_dynamic=False),
 )
 OBSTACLES: Plugin[Layer] = Plugin(
-    "costmap_2d::ObstacleLayer", ObstacleSettings, ObstacleLayer, ignored=IGNORED
+    "costmap_2d::ObstacleLayer",
+    ObstacleSettings,
+    ObstacleLayer,
+    without_effect=(TOLERANCE,),
+    elsewhere=ELSEWHERE,
 )
 VOXEL: Plugin[Layer] = Plugin(
-    "costmap_2d::VoxelLayer", ObstacleSettings, ObstacleLayer, without_effect=VOXELS, ignored=IGNORED
+    "costmap_2d::VoxelLayer",
+    ObstacleSettings,
+    ObstacleLayer,
+    without_effect=(*VOXELS, TOLERANCE),
+    elsewhere=ELSEWHERE,
 )
