@@ -23,6 +23,7 @@ class Observation:
         range_min: Shortest valid range [m].
         range_max: Limit of valid ranges [m].
         heights: Heights of the end points above the floor [m], one for all or (N,).
+        sensor_height: Height of the origin of the beams above the floor [m].
     """
 
     topic: str
@@ -33,6 +34,7 @@ class Observation:
     range_min: float = 0.0
     range_max: float = np.inf
     heights: Union[float, np.ndarray] = 0.0
+    sensor_height: float = 0.0
 
 
 def observation_from_scan(topic: str, scan: Scan, height: float = 0.0) -> Observation:
@@ -52,11 +54,12 @@ def observation_from_scan(topic: str, scan: Scan, height: float = 0.0) -> Observ
         scan.range_min,
         scan.range_max,
         height,
+        height,
     )
 
 
 def observation_from_points(
-    topic: str, stamp: float, sensor_in_base: Pose2, points_xyz: np.ndarray
+    topic: str, stamp: float, sensor_in_base: Pose2, points_xyz: np.ndarray, sensor_height: float = 0.0
 ) -> Observation:
     """Convert a point cloud to a costmap observation.
 
@@ -66,6 +69,7 @@ def observation_from_points(
         sensor_in_base: Sensor in the base frame.
         points_xyz: (N, 3) points in the base frame, z above the floor [m]; points that are not finite are
             dropped.
+        sensor_height: Height of the sensor above the floor [m].
     """
     points_xyz = points_xyz[np.isfinite(points_xyz).all(axis=1)]
     offsets_xy = sensor_in_base.inverse().transform_points(points_xyz[:, :2])
@@ -76,4 +80,5 @@ def observation_from_points(
         np.arctan2(offsets_xy[:, 1], offsets_xy[:, 0]),
         np.hypot(offsets_xy[:, 0], offsets_xy[:, 1]),
         heights=points_xyz[:, 2],
+        sensor_height=sensor_height,
     )

@@ -210,4 +210,4 @@ def parse_footprint(value: Any, name: str) -> Tuple[Tuple[float, float], ...]:
 
 def _with_commas(text: str) -> str:
     """Separate points and numbers by commas, which costmap_2d does not need: ``[[0 1] [2 3] [4 5]]``."""
-    return re.sub(r"(?<=[\]\d.])\s+(?=[\[\d.+-])", ", ", text)
+    return re.sub(r"(?<=[\d.])\s+(?=[\d.+-])|(?<=\])\s*(?=\[)", ", ", text)

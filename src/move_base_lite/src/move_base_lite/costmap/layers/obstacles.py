@@ -180,21 +180,21 @@ class ObstacleLayer(Layer):
 
     def _integrate(self, window, source, located, mark_range: float, clear_range: float) -> None:
         observation, sensor = located.observation, located.sensor_in_frame
-        highest = min(source.max_obstacle_height, self._settings.max_obstacle_height)
-        at_height = (source.min_obstacle_height <= observation.heights) & (observation.heights <= highest)
-        if np.ndim(at_height) == 0:  # all of the beams, or none
-            at_height = slice(None) if at_height else slice(0)
         _integrate(
             self._costs,
-            (sensor.x - window.origin_x) / window.resolution,
-            (sensor.y - window.origin_y) / window.resolution,
-            sensor.yaw + observation.angles[at_height],
-            observation.ranges[at_height],
-            observation.range_min,
-            observation.range_max,
+            (
+                (sensor.x - window.origin_x) / window.resolution,
+                (sensor.y - window.origin_y) / window.resolution,
+                observation.sensor_height,
+            ),
+            sensor.yaw + observation.angles,
+            observation.ranges,
+            np.atleast_1d(observation.heights),
+            (source.min_obstacle_height, min(source.max_obstacle_height, self._settings.max_obstacle_height)),
+            (observation.range_min, observation.range_max),
             window.resolution,
             mark_range,
-            clear_range,
+            math.ceil(clear_range / window.resolution),
             source.inf_is_valid,
         )
 
@@ -244,37 +244,57 @@ class ObstacleLayer(Layer):
 
 @numba.njit(cache=True)
 def _integrate(
-    costs, x, y, angles, ranges, range_min, range_max, resolution, mark_range, clear_range, inf_is_valid
-):
-    """Clear along all beams, then mark their ends; ``x``, ``y``: position of the sensor in cells."""
+    costs, sensor, angles, ranges, heights, height_limits, range_limits, resolution, mark_range, clear_cells,
+    inf_is_valid,
+):  # fmt: skip
+    """Clear along all beams, at most so many cells, then mark their ends.
+
+    ``sensor`` is its position, x and y in cells, z in metres. Marks count by their distance from the sensor
+    in three dimensions.
+    """
     rows, cols = costs.shape
-    for i in range(ranges.size if clear_range > 0.0 else 0):
-        reach = ranges[i]
-        if math.isinf(reach) and reach > 0.0 and inf_is_valid:
-            reach = range_max
-        elif not (range_min <= reach < range_max):
-            continue
-        length = min(reach, clear_range) / resolution
-        _clear_ray(costs, x, y, x + length * math.cos(angles[i]), y + length * math.sin(angles[i]))
+    x, y, z = sensor
     for i in range(ranges.size):
-        reach = ranges[i]
-        if range_min <= reach < range_max and reach <= mark_range:
-            row = math.floor(y + reach / resolution * math.sin(angles[i]))
-            col = math.floor(x + reach / resolution * math.cos(angles[i]))
-            if 0 <= row < rows and 0 <= col < cols:
-                costs[row, col] = LETHAL
+        height = heights[i] if heights.size > 1 else heights[0]
+        if not height_limits[0] <= height <= height_limits[1]:
+            continue
+        reach, is_return = ranges[i], True
+        if math.isinf(reach) and reach > 0.0 and inf_is_valid:
+            reach, is_return = range_limits[1], False
+        elif not (range_limits[0] <= reach < range_limits[1]):
+            continue
+        end_col = math.floor(x + reach / resolution * math.cos(angles[i]))
+        end_row = math.floor(y + reach / resolution * math.sin(angles[i]))
+        if clear_cells > 0:
+            _clear_ray(costs, math.floor(x), math.floor(y), end_col, end_row, clear_cells, is_return)
+        is_near = is_return and reach * reach + (height - z) * (height - z) < mark_range * mark_range
+        if is_near and 0 <= end_row < rows and 0 <= end_col < cols:
+            costs[end_row, end_col] = LETHAL
 
 
 @numba.njit(cache=True)
-def _clear_ray(costs, x0, y0, x1, y1):
-    """Clear the cells from (x0, y0) up to but not including (x1, y1), one per row or column."""
+def _clear_ray(costs, col, row, end_col, end_row, most_cells, spares_end):
+    """Clear the cells of a line, at most so many (costmap_2d: raytraceLine, by Bresenham's algorithm).
+
+    ``spares_end``: whether the cell at its end stays, as it contains a return.
+    """
     rows, cols = costs.shape
-    steps = int(max(abs(x1 - x0), abs(y1 - y0)))
-    for step in range(steps):
-        col = math.floor(x0 + (x1 - x0) * step / steps)
-        row = math.floor(y0 + (y1 - y0) * step / steps)
-        if 0 <= row < rows and 0 <= col < cols:
-            costs[row, col] = FREE
+    across, up = abs(end_col - col), abs(end_row - row)
+    col_step, row_step = 1 if end_col > col else -1, 1 if end_row > row else -1
+    length = math.sqrt(across * across + up * up)
+    long, short = max(across, up), min(across, up)
+    steps, error = long, long // 2
+    if length > most_cells:
+        steps, spares_end = int(most_cells / length * long), False
+    for step in range(steps + 1):
+        if not (0 <= row < rows and 0 <= col < cols) or (spares_end and step == steps):
+            return
+        costs[row, col] = FREE
+        error += short
+        turns = error >= long
+        error -= long * turns
+        col += col_step * (across >= up or turns)
+        row += row_step * (across < up or turns)
 
 
 # Parameters that are read with the sources.
