@@ -3,7 +3,7 @@
 import math
 from typing import Any, Dict, List
 
-from case import Case
+from case import Case, Rig
 
 INF = math.inf
 STATIC, OBSTACLES = "costmap_2d::StaticLayer", "costmap_2d::ObstacleLayer"
@@ -900,3 +900,18 @@ PRE_HYDRO: List[Case] = [
 CASES: List[Case] = [
     *STATIC_LAYER, *OBSTACLE_LAYER, *ORDER, *INFLATION_LAYER, *FOOTPRINTS, *PRE_HYDRO,
 ]  # fmt: skip
+
+
+def _run_ours(given: Any) -> Any:
+    from costmap_2d_rig import run_ours
+
+    return run_ours(given)
+
+
+def _run_official(given: Any) -> Any:
+    from costmap_2d_official import run_official  # imports ROS
+
+    return run_official(given)
+
+
+RIGS: Dict[str, Rig] = {"costmap_2d": Rig(_run_ours, _run_official, ("costmap_2d/costmap_2d_node",))}
