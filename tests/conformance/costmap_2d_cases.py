@@ -108,7 +108,7 @@ STATIC_LAYER: List[Case] = [
     statement(
         "a_static_layer_that_is_not_enabled_still_sets_the_size",
         f"{STATIC_CPP}: incomingMap resizes",
-        costmap(static("real", enabled=False), width=3, height=3),
+        costmap(static("real", enabled=False), obstacles(), width=3, height=3),
         {"size": (), **WALLS},
         {"size": (10, 10), "real": 0, "virtual": 0, "free": 0},
         maps={"map": WALL},
@@ -346,7 +346,7 @@ OBSTACLE_LAYER: List[Case] = [
     statement(
         "an_obstacle_layer_that_is_not_enabled_adds_nothing",
         f"{OBSTACLE_CPP}: enabled",
-        costmap(obstacles(enabled=False)),
+        costmap(obstacles(enabled=False), obstacles("other", **sources("other"))),
         AHEAD,
         MISS,
         steps=[[("cloud", AT_AHEAD)]],
@@ -654,14 +654,6 @@ ORDER: List[Case] = [
         ),
         {"near": (2.75, 1.75), "far": (2.75, 2.25)},
         {"near": NEXT, "far": decayed(1.0, 0.2, 3.0)},
-        steps=[[("cloud", AT_AHEAD)]],
-    ),
-    statement(
-        "plugins_may_be_an_empty_list",
-        "src/layered_costmap.cpp: plugins_.size() == 0",
-        costmap(plugins=[], observation_sources="cloud", cloud=CLOUD),
-        AHEAD,
-        MISS,
         steps=[[("cloud", AT_AHEAD)]],
     ),
 ]

@@ -2,6 +2,7 @@
 
 import atexit
 import os
+import signal
 import subprocess
 import sys
 import tempfile
@@ -24,7 +25,7 @@ from std_msgs.msg import Header
 from planar import Pose2
 from planar_ros.messages.conversion import OccupancyGridArrays, grid_to_msg, pose2_to_msg
 
-PORT = 11791
+PORT = 11792
 NODE = "costmap_node"
 START_SECONDS, STEP_SECONDS = 15.0, 0.6
 
@@ -45,6 +46,23 @@ def is_installed(package: str) -> bool:
     except rospkg.ResourceNotFound:
         return False
     return True
+
+
+def has_service(name: str) -> bool:
+    """Whether a service is advertised."""
+    try:
+        rosgraph.Master("/conformance").lookupService(name)
+    except rosgraph.MasterError:
+        return False
+    return True
+
+
+def end(process: subprocess.Popen) -> None:
+    """End a node so that it unregisters from the master."""
+    process.send_signal(signal.SIGINT)
+    if not wait_until(lambda: process.poll() is not None, START_SECONDS):
+        process.kill()
+    process.wait()
 
 
 def join_master() -> None:
@@ -137,7 +155,7 @@ class _Costmap:
         """Return what is observed at the probes."""
         sensors: Dict[str, rospy.Publisher] = {}
         try:
-            self._await_costmap()
+            wait_until(lambda: has_service(f"/{NODE}/costmap/set_parameters"), START_SECONDS)
             for messages in self._case.get("steps", [[]]):
                 for topic, data in messages:
                     self._send(sensors, topic, np.array(data, dtype=float))
@@ -145,8 +163,7 @@ class _Costmap:
             self._await_costmap()
             return self._observed()
         finally:
-            self._process.kill()
-            self._process.wait()
+            end(self._process)
             for publisher in (*self._publishers, *sensors.values()):
                 publisher.unregister()
 

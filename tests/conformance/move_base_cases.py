@@ -56,7 +56,7 @@ TABLES: List[Tuple[str, str, Dict[str, Any], List[Tuple[Any, ...]]]] = [
             ("enabled", True),
             ("footprint_clearing_enabled", True),
             ("max_obstacle_height", 2.0, 0.0, 50.0),
-            ("combination_method", 1.0, 0.0, 99.0),
+            ("combination_method", 1.0, None, None),
         ],
     ),
     (

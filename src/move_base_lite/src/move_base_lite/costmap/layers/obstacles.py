@@ -75,7 +75,7 @@ class ObstacleSettings(LayerSettings):
     combination_method: int = parameter(
         MAXIMUM,
         "with the layers below: 0 overwrites, 1 keeps the higher cost, 99 ignores this layer",
-        dynamic=(0, 99),
+        dynamic=True,
     )
     sources: Tuple[SourceSettings, ...] = ()
 
