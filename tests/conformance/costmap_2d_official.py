@@ -3,6 +3,7 @@
 import atexit
 import os
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -25,7 +26,6 @@ from std_msgs.msg import Header
 from planar import Pose2
 from planar_ros.messages.conversion import OccupancyGridArrays, grid_to_msg, pose2_to_msg
 
-PORT = 11792
 NODE = "costmap_node"
 START_SECONDS, STEP_SECONDS = 15.0, 0.6
 
@@ -69,11 +69,14 @@ def join_master() -> None:
     """Start a master and make this process a node of it, once."""
     if rospy.core.is_initialized():
         return
-    os.environ["ROS_MASTER_URI"] = f"http://127.0.0.1:{PORT}"
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    os.environ["ROS_MASTER_URI"] = f"http://127.0.0.1:{port}"
     os.environ["ROS_IP"] = "127.0.0.1"
     os.environ["ROS_LOG_DIR"] = tempfile.mkdtemp(prefix="conformance-")
     code = "import rosmaster, sys; rosmaster.rosmaster_main(['rosmaster', '--core', '-p', sys.argv[1]])"
-    master = subprocess.Popen([sys.executable, "-c", code, str(PORT)], stdout=subprocess.DEVNULL)
+    master = subprocess.Popen([sys.executable, "-c", code, str(port)], stdout=subprocess.DEVNULL)
     atexit.register(master.kill)
     wait_until(rosgraph.is_master_online, START_SECONDS)
     rospy.init_node("conformance", disable_signals=True)

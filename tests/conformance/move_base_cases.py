@@ -252,6 +252,8 @@ RECOVERIES: List[Case] = [
         "recoveries",
         _listed({"name": "turn", "type": "RotateRecovery"}),
         ["turn"],
+        official=[*DEFAULTS[:3], "rotate_recovery"],
+        reason="the official search means to find it, but an inner loop hides its index",
     ),
     Case(
         "two_behaviors_of_one_name_are_replaced_by_the_default_ones",

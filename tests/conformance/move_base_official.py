@@ -109,6 +109,7 @@ def recoveries_of_official(given: Mapping[str, Any]) -> List[str]:
 
     Robot and goal are in a wall: there is no plan, and no room to rotate.
     """
+    join_master()
     plugins = {"plugins": [{"name": "static", "type": "costmap_2d::StaticLayer"}]}
     parameters = {
         **given["parameters"],

@@ -68,8 +68,8 @@ def plan_parameters(given: Mapping[str, Any]) -> Dict[str, Any]:
     """Parameters of move_base with a static layer and a small robot."""
     plugins = [{"name": "static", "type": "costmap_2d::StaticLayer"}]
     plugins.append({"name": "inflation", "type": "costmap_2d::InflationLayer"})
-    inflation = {"inflation_radius": given.get("inflation_radius", 0.0)}
-    global_costmap = {"plugins": plugins, "inflation": inflation, "robot_radius": 0.05}
+    inflation = {"inflation_radius": 0.3}
+    global_costmap = {"plugins": plugins, "inflation": inflation, "robot_radius": 0.3}
     local_costmap = {"rolling_window": True, "width": 2, "height": 2, "robot_radius": 0.05}
     return with_frames(
         {

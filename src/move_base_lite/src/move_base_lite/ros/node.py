@@ -32,6 +32,7 @@ from planar import Pose2, Twist2
 from planar_ros.lockstep import LockstepClient
 from planar_ros.messages.conversion import frame_name
 from planar_ros.messages.transforms import Transforms
+from planar_ros.node.memory import release_compiler
 from planar_ros.node.parameters import is_strict, parameters_below, report_without_effect
 from planar_ros.node.readiness import ReadinessMonitor
 from planar_ros.node.runner import run
@@ -53,6 +54,7 @@ class MoveBaseNode:
         zones_file = parameters.get("zones_file", "")
         self._zones = load_zones(zones_file) if zones_file else Zones()
         warm_up(self._settings)
+        release_compiler()
         costmaps = self._settings.global_costmap, self._settings.local_costmap
         self._map_frame, odom_frame = (frame_name(costmap.global_frame) for costmap in costmaps)
         self._global_planner = _short_name(parameters, "base_global_planner", "navfn/NavfnROS")

@@ -169,25 +169,30 @@ class ObstacleLayer(Layer):
             source = buffer.source
             reach = max(source.obstacle_range, source.raytrace_range) + window.resolution
             for located in buffer.kept:
-                self._integrate(window, source, located, 0.0, source.raytrace_range * source.clearing)
+                if source.clearing:
+                    self._integrate(window, source, located, 0.0, source.raytrace_range)
                 sensor = located.sensor_in_frame
                 changed = union(changed, window.bounds_around(sensor.x, sensor.y, reach))
         for buffer in self._buffers:
             for located in buffer.kept:
-                reach = buffer.source.obstacle_range * buffer.source.marking
-                self._integrate(window, buffer.source, located, reach, 0.0)
+                if buffer.source.marking:
+                    self._integrate(window, buffer.source, located, buffer.source.obstacle_range, 0.0)
         return changed
 
     def _integrate(self, window, source, located, mark_range: float, clear_range: float) -> None:
         observation, sensor = located.observation, located.sensor_in_frame
+        # numba finds the type of a plain tuple several times as fast as that of a named one.
+        block = tuple(window.bounds_around(sensor.x, sensor.y, max(mark_range, clear_range)))
         _integrate(
             self._costs,
+            block,
             (
                 (sensor.x - window.origin_x) / window.resolution,
                 (sensor.y - window.origin_y) / window.resolution,
                 observation.sensor_height,
+                sensor.yaw,
             ),
-            sensor.yaw + observation.angles,
+            observation.directions_xy,
             observation.ranges,
             np.atleast_1d(observation.heights),
             (source.min_obstacle_height, min(source.max_obstacle_height, self._settings.max_obstacle_height)),
@@ -244,16 +249,19 @@ class ObstacleLayer(Layer):
 
 @numba.njit(cache=True)
 def _integrate(
-    costs, sensor, angles, ranges, heights, height_limits, range_limits, resolution, mark_range, clear_cells,
-    inf_is_valid,
+    costs, block, sensor, directions, ranges, heights, height_limits, range_limits, resolution, mark_range,
+    clear_cells, inf_is_valid,
 ):  # fmt: skip
-    """Clear along all beams, at most so many cells, then mark their ends.
+    """Clear along all beams, at most so many cells, or mark their ends.
 
-    ``sensor`` is its position, x and y in cells, z in metres. Marks count by their distance from the sensor
-    in three dimensions.
+    ``sensor`` is its position, x and y in cells, z in metres, and its yaw; ``block`` contains all cells that
+    can change. Marks count by their distance from the sensor in three dimensions. Of rays with the same end
+    in the block one is traced.
     """
-    rows, cols = costs.shape
-    x, y, z = sensor
+    x, y, z, yaw = sensor
+    c, s = math.cos(yaw) / resolution, math.sin(yaw) / resolution
+    row_min, row_max, col_min, col_max = block
+    traced = np.zeros((2, row_max - row_min, col_max - col_min), dtype=np.bool_)
     for i in range(ranges.size):
         height = heights[i] if heights.size > 1 else heights[0]
         if not height_limits[0] <= height <= height_limits[1]:
@@ -263,13 +271,37 @@ def _integrate(
             reach, is_return = range_limits[1], False
         elif not (range_limits[0] <= reach < range_limits[1]):
             continue
-        end_col = math.floor(x + reach / resolution * math.cos(angles[i]))
-        end_row = math.floor(y + reach / resolution * math.sin(angles[i]))
+        end_x = x + reach * (c * directions[i, 0] - s * directions[i, 1])
+        end_y = y + reach * (s * directions[i, 0] + c * directions[i, 1])
         if clear_cells > 0:
-            _clear_ray(costs, math.floor(x), math.floor(y), end_col, end_row, clear_cells, is_return)
-        is_near = is_return and reach * reach + (height - z) * (height - z) < mark_range * mark_range
-        if is_near and 0 <= end_row < rows and 0 <= end_col < cols:
-            costs[end_row, end_col] = LETHAL
+            row, col, is_cut = _cut_to_costs(costs, x, y, end_x, end_y)
+            spares_end = is_return and not is_cut
+            if row_min <= row < row_max and col_min <= col < col_max:
+                if traced[int(spares_end), row - row_min, col - col_min]:
+                    continue
+                traced[int(spares_end), row - row_min, col - col_min] = True
+            _clear_ray(costs, math.floor(x), math.floor(y), col, row, clear_cells, spares_end)
+        elif is_return and reach * reach + (height - z) * (height - z) < mark_range * mark_range:
+            row, col = math.floor(end_y), math.floor(end_x)
+            if row_min <= row < row_max and col_min <= col < col_max:
+                costs[row, col] = LETHAL
+
+
+@numba.njit(cache=True)
+def _cut_to_costs(costs, x, y, end_x, end_y):
+    """Row and column of the end of a ray, or of the last cell before it leaves the costs; whether it does."""
+    rows, cols = costs.shape
+    part = 1.0
+    if end_x < 0.0:
+        part = min(part, x / (x - end_x))
+    elif end_x >= cols:
+        part = min(part, (cols - x) / (end_x - x))
+    if end_y < 0.0:
+        part = min(part, y / (y - end_y))
+    elif end_y >= rows:
+        part = min(part, (rows - y) / (end_y - y))
+    row, col = math.floor(y + part * (end_y - y)), math.floor(x + part * (end_x - x))
+    return min(max(row, 0), rows - 1), min(max(col, 0), cols - 1), part < 1.0
 
 
 @numba.njit(cache=True)
