@@ -27,7 +27,7 @@ from supervision.processes import adopt_orphans
 
 UNIT_SECONDS = 900.0  # on a busy machine; usually a minute
 MOST_JOBS = 4
-UNIT_PLACES = ("src/**/test", "tests/runner", "tests/repository", "tests/fuzz")
+UNIT_PLACES = ("src/**/test", "tests/runner", "tests/repository", "tests/fuzz", "tests/conformance")
 KINDS = ("unit", "ros", "all")
 
 

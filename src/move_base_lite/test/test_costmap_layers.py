@@ -14,8 +14,10 @@ from move_base_lite.costmap import (
     Layer,
     LayeredCostmap,
     LayerSettings,
+    named_layers,
     observation_from_points,
 )
+from move_base_lite.costmap.layers.inflation import InflationSettings
 from planar import Pose2
 from planar.config.parameters import parameter
 from planar.extensions import Plugin, Registry
@@ -46,7 +48,8 @@ def test_a_user_defined_layer_is_inflated(monkeypatch):
     line = Plugin("mine::LineLayer", LineSettings, LineLayer)
     layers = Registry(LAYERS.point, *LAYERS.members, line)
     monkeypatch.setattr("move_base_lite.costmap.costmap.LAYERS", layers)
-    costmap = LayeredCostmap(CostmapSettings(width=1.0, height=1.0, plugin_layers=(LineSettings(col=4),)))
+    layers_of_costmap = named_layers(line=LineSettings(col=4), inflation=InflationSettings())
+    costmap = LayeredCostmap(CostmapSettings(width=1.0, height=1.0, layers=layers_of_costmap))
     assert (costmap.costs[:, 4] == LETHAL).all()
     assert (costmap.costs[:, [3, 5]] > 0).all()
 

@@ -4,11 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from costmap_with_layers import costmap_with, with_layer
 
 from move_base_lite.check import maps
 from move_base_lite.control import Plan
 from move_base_lite.control.mppi.scene import scene_of
-from move_base_lite.costmap import INSCRIBED, CostmapSettings, LayeredCostmap
+from move_base_lite.costmap import INSCRIBED, LayeredCostmap
 from move_base_lite.costmap.layers.static import StaticSettings
 from planar import OccupancyGrid, Pose2
 
@@ -33,7 +34,7 @@ def walled(monkeypatch):
 def scene_in(room, global_costmap, map_in_local, use_global_costmap=True):
     """The scene at the start with an empty local costmap, and that costmap's window."""
     nothing = OccupancyGrid(np.zeros((400, 400), np.int8), 0.05, Pose2(-10.0, -10.0, 0.0))
-    near = LayeredCostmap(CostmapSettings(static=StaticSettings(), robot_radius=maps.RADIUS), nothing)
+    near = LayeredCostmap(costmap_with(StaticSettings(), robot_radius=maps.RADIUS), nothing)
     base = Pose2(*room.start_xy, 0.0)
     context = replace(
         maps.context_of(near, map_in_local @ base), base_in_map=base, global_costmap=global_costmap
@@ -76,9 +77,7 @@ def test_by_default_only_the_local_costmap_counts(walled):
 
 def test_cells_beside_a_wall_of_the_global_costmap_are_expensive(walled):
     settings = walled.costmap.settings
-    bare = walled.costmap.with_settings(
-        replace(settings, inflation=replace(settings.inflation, enabled=False))
-    )
+    bare = walled.costmap.with_settings(with_layer(settings, "inflation", enabled=False))
     past_corner_xy = (3.25, 0.9)
     lethal_alone = cost_to_go(walled, bare, Pose2(), past_corner_xy)
     assert cost_to_go(walled, walled.costmap, Pose2(), past_corner_xy) > lethal_alone + 0.3

@@ -34,7 +34,7 @@ DOCUMENTED = yaml.safe_load((CONFIG / "move_base_lite.yaml").read_text())
         (DwaSettings, ["DWAPlannerROS"], set()),
         (MppiSettings, ["MppiPlannerROS"], set()),
         (RotateSettings, ["TrajectoryPlannerROS"], set()),
-        (CostmapSettings, ["global_costmap"], {"static", "obstacles", "plugin_layers", "inflation"}),
+        (CostmapSettings, ["global_costmap"], {"layers"}),
         (StaticSettings, ["global_costmap", "static_layer"], set()),
         (ObstacleSettings, ["global_costmap", "obstacle_layer"], {"sources"}),
         (SourceSettings, ["global_costmap", "obstacle_layer", "scan"], {"topic"}),
@@ -52,6 +52,10 @@ def test_each_default_is_listed_in_the_configuration_file(kind, keys, not_listed
             assert tree[item.name] == (list(default) if isinstance(default, tuple) else default), item.name
 
 
+def layer_names(costmap):
+    return [layer.name for layer in costmap.layers]
+
+
 @pytest.mark.parametrize("name", ["move_base_lite.yaml", "turtlebot.yaml", "jackal.yaml"])
 def test_a_shipped_file_is_read_without_a_warning(name):
     _, warnings = settings_from_parameters(yaml.safe_load((CONFIG / name).read_text()))
@@ -60,13 +64,13 @@ def test_a_shipped_file_is_read_without_a_warning(name):
 
 def test_the_preset_configures_both_costmaps():
     settings = load_settings(CONFIG / "turtlebot.yaml")
-    assert settings.global_costmap.static.enabled
-    assert not settings.local_costmap.static.enabled
+    assert layer_names(settings.global_costmap) == ["static_layer", "obstacle_layer", "inflation_layer"]
+    assert layer_names(settings.local_costmap) == ["obstacle_layer", "inflation_layer"]
     assert settings.local_costmap.rolling_window
     for costmap in (settings.global_costmap, settings.local_costmap):
         assert costmap.robot_radius == 0.2
         assert costmap.transform_tolerance == 0.5
-        assert costmap.obstacles.sources[0].inf_is_valid
+        assert costmap.sources[0].inf_is_valid
 
 
 def test_costmap_parameters_from_before_plugins_are_accepted():
@@ -82,9 +86,9 @@ def test_costmap_parameters_from_before_plugins_are_accepted():
         }
     )
     costmap = settings.global_costmap
-    assert costmap.static.enabled
-    assert costmap.inflation.inflation_radius == 0.4
-    scan, bump = costmap.obstacles.sources
+    assert layer_names(costmap) == ["static_layer", "obstacle_layer", "inflation_layer"]
+    assert costmap.layers[2].settings.inflation_radius == 0.4
+    scan, bump = costmap.sources
     assert (scan.topic, scan.clearing, scan.data_type) == ("/scan", True, "LaserScan")
     assert (bump.topic, bump.clearing, bump.data_type) == ("bump", False, "PointCloud2")
 
@@ -168,7 +172,7 @@ def test_ranges_of_sources_are_inherited_from_enclosing_namespaces():
     settings, warnings = settings_from_parameters(
         {"obstacle_range": 4.0, "local_costmap": {"plugins": plugins, "obstacle_layer": layer}}
     )
-    front, back = settings.local_costmap.obstacles.sources
+    front, back = settings.local_costmap.sources
     assert (front.topic, front.obstacle_range, front.raytrace_range) == ("front", 4.0, 6.0)
     assert (back.topic, back.obstacle_range, back.raytrace_range) == ("back", 1.0, 6.0)
     assert warnings == []
@@ -176,13 +180,15 @@ def test_ranges_of_sources_are_inherited_from_enclosing_namespaces():
 
 @pytest.mark.parametrize(
     "costmap, layer, tracks",
-    [(True, {}, True), (False, {}, False), (False, {"track_unknown_space": True}, True)],
+    [(True, {}, True), (False, {}, False), (None, {"track_unknown_space": True}, True)],
 )
 def test_a_layer_inherits_track_unknown_space_from_its_costmap(costmap, layer, tracks):
     plugins = [{"name": "obstacle_layer", "type": "costmap_2d::ObstacleLayer"}]
-    parameters = {"track_unknown_space": costmap, "plugins": plugins, "obstacle_layer": layer}
+    parameters = {"plugins": plugins, "obstacle_layer": layer}
+    if costmap is not None:
+        parameters["track_unknown_space"] = costmap
     settings, warnings = settings_from_parameters({"global_costmap": parameters})
-    assert settings.global_costmap.obstacles.track_unknown_space is tracks
+    assert settings.global_costmap.layers[0].settings.track_unknown_space is tracks
     assert warnings == []
 
 

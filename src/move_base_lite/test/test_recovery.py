@@ -4,12 +4,12 @@ import math
 
 import numpy as np
 import pytest
+from costmap_with_layers import costmap_with
 
 from move_base_lite.check import CHECK_SUITES
 from move_base_lite.costmap import LETHAL, observation_from_points
 from move_base_lite.costmap.costmap import LayeredCostmap
 from move_base_lite.costmap.layers.obstacles import ObstacleSettings, SourceSettings
-from move_base_lite.costmap.settings import CostmapSettings
 from move_base_lite.recovery import (
     RECOVERIES,
     ClearCostmapSettings,
@@ -34,7 +34,7 @@ class RecoveryBench:
         self.limits, self.slip = [], slip
         self.pose, self.twist = pose, Twist2()
         sources = (SourceSettings(topic="cloud", obstacle_range=9.0, raytrace_range=9.0),)
-        settings = CostmapSettings(
+        settings = costmap_with(
             obstacles=ObstacleSettings(sources=sources), **(footprint or {"robot_radius": 0.2})
         )
         self.costmaps = [LayeredCostmap(settings) for _ in range(2)]

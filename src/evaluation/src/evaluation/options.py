@@ -170,11 +170,13 @@ class GraphOptions(RunOptions, WorldOptions):
         "record bags: scans, odometry and ground truth, or everything (docs/how_to/record_and_replay.md)",
         choices=("inputs", "all"),
     )
+    strict: bool = option(False, "a setting without effect, such as an unknown parameter, is an error")
 
     def launch(self, file: str, **arguments: object) -> LaunchPlan:
         """Return the plan for a launch file of home_service with this world, robot and seed."""
         world = {"world_file": self.world.resolve(), "robot": self.robot, "seed": self.seed}
-        return LaunchPlan(file, {**world, **arguments}, bags=self.record)
+        strict = {"strict": "true"} if self.strict else {}
+        return LaunchPlan(file, {**world, **strict, **arguments}, bags=self.record)
 
 
 # Respawned nodes of a mapping run: they resume from a checkpoint.

@@ -105,7 +105,7 @@ class NavigatorSettings:
     def scan_topic(self) -> str:
         """Topic of the first laser scan among the observation sources."""
         for costmap in (self.local_costmap, self.global_costmap):
-            for source in costmap.obstacles.sources:
+            for source in costmap.sources:
                 if source.data_type == "LaserScan":
                     return source.topic
         return "scan"

@@ -6,7 +6,8 @@ import numpy as np
 
 from move_base_lite.config import NavigatorSettings
 from move_base_lite.control.escape import escape_command
-from move_base_lite.costmap import observation_from_scan
+from move_base_lite.costmap import NamedLayer, observation_from_scan
+from move_base_lite.costmap.layers.static import StaticSettings
 from move_base_lite.navigator import Navigator, NavigatorInputs, RobotState
 from planar import OccupancyGrid, Pose2, Scan, Twist2
 
@@ -17,8 +18,10 @@ def warm_up(settings: NavigatorSettings) -> None:
     Args:
         settings: Settings of the Navigator, which select the kernels.
     """
-    static = replace(settings.global_costmap.static, enabled=True)
-    settings = replace(settings, global_costmap=replace(settings.global_costmap, static=static))
+    costmap = settings.global_costmap
+    if not costmap.static_layers:
+        layers = (NamedLayer("warm_up", StaticSettings()), *costmap.layers)
+        settings = replace(settings, global_costmap=replace(costmap, layers=layers))
     navigator = Navigator(settings, OccupancyGrid(np.zeros((60, 60), np.int8), 0.1))
     start = Pose2(3.0, 3.0)
     ranges = np.array([2.0, np.inf, np.nan], dtype=np.float32)

@@ -7,8 +7,9 @@ from typing import Any, List, Tuple
 import numpy as np
 
 from move_base_lite.control import ControlContext, Controller
-from move_base_lite.costmap import CostmapSettings, LayeredCostmap
+from move_base_lite.costmap import CostmapSettings, LayeredCostmap, named_layers
 from move_base_lite.costmap.layers.inflation import InflationSettings
+from move_base_lite.costmap.layers.obstacles import ObstacleSettings
 from move_base_lite.costmap.layers.static import StaticSettings
 from move_base_lite.dynamic_obstacles import NO_DYNAMIC_OBSTACLES
 from move_base_lite.planning import Navfn, NavfnSettings, PlanRequest
@@ -90,9 +91,12 @@ def check_map(name: str) -> CheckMap:
     cells = np.kron(coarse.cells, np.ones((times, times), np.int8))
     grid = replace(coarse, cells=cells, resolution=RESOLUTION)
     settings = CostmapSettings(
-        static=StaticSettings(),
         robot_radius=RADIUS,
-        inflation=InflationSettings(inflation_radius=0.5, cost_scaling_factor=5.0),
+        layers=named_layers(
+            static=StaticSettings(),
+            obstacles=ObstacleSettings(),
+            inflation=InflationSettings(inflation_radius=0.5, cost_scaling_factor=5.0),
+        ),
     )
     return CheckMap(LayeredCostmap(settings, grid), _centre_of("S", picture), _centre_of("G", picture))
 

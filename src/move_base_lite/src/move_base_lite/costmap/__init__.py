@@ -10,7 +10,8 @@ from move_base_lite.costmap.layer import CostmapPlacement, Layer, LayerContext, 
 from move_base_lite.costmap.observation import Observation, observation_from_points, observation_from_scan
 from move_base_lite.costmap.polygon import Polygon
 from move_base_lite.costmap.registry import LAYERS
-from move_base_lite.costmap.settings import CostmapSettings
+from move_base_lite.costmap.settings import CostmapSettings, NamedLayer, named_layers
+from move_base_lite.costmap.static_maps import Maps, MapSource, StaticMap, StaticMaps
 from move_base_lite.costmap.window import CellBounds, CostmapWindow
 from planar.deprecation import deprecated_names
 
@@ -29,9 +30,15 @@ __all__ = [
     "LayerContext",
     "LayerSettings",
     "LayeredCostmap",
+    "MapSource",
+    "Maps",
+    "NamedLayer",
     "Observation",
     "Polygon",
+    "StaticMap",
+    "StaticMaps",
     "footprint_from",
+    "named_layers",
     "observation_from_points",
     "observation_from_scan",
     "occupancy_of",

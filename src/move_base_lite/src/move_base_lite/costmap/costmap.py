@@ -1,18 +1,21 @@
-"""Layered costmap: static map, obstacles, zones, plugin layers and inflation (costmap_2d)."""
+"""Layered costmap (costmap_2d: LayeredCostmap)."""
 
 import math
-from typing import List, Optional, Sequence
+from typing import Dict, List, Optional, Sequence
 
 import numpy as np
 
 from move_base_lite.costmap.costs import FREE, UNKNOWN
 from move_base_lite.costmap.footprint import Footprint, collides, contacts, footprint_from
 from move_base_lite.costmap.layer import CostmapPlacement, Layer, LayerContext, LayerSettings
+from move_base_lite.costmap.layers.inflation import InflationSettings
+from move_base_lite.costmap.layers.static import window_of_map
 from move_base_lite.costmap.layers.zones import ZoneLayer
 from move_base_lite.costmap.observation import Observation
 from move_base_lite.costmap.polygon import Polygon
 from move_base_lite.costmap.registry import LAYERS
 from move_base_lite.costmap.settings import CostmapSettings
+from move_base_lite.costmap.static_maps import Maps, StaticMaps
 from move_base_lite.costmap.window import NO_CELLS, CellBounds, CostmapWindow, union
 from planar import OccupancyGrid, Pose2
 
@@ -35,35 +38,28 @@ class LayeredCostmap:
         map_costs: Costs without observations, uint8 (rows, cols).
     """
 
-    def __init__(
-        self,
-        settings: CostmapSettings,
-        grid: Optional[OccupancyGrid] = None,
-        map_window: Optional[CostmapWindow] = None,
-    ):
+    def __init__(self, settings: CostmapSettings, maps: Maps = None):
         """Create a costmap without observations.
 
         Args:
             settings: Parameters of the costmap and its layers.
-            grid: Static map, if there is one.
-            map_window: Window of the static map; keeps its size if the static layer has been disabled since.
+            maps: Maps of the static layers; one grid is the map of all of them.
         """
         self.settings = settings
         self.footprint: Footprint = footprint_from(
             settings.footprint, settings.robot_radius, settings.footprint_padding
         )
-        self._map = grid
-        self._map_window = map_window or _window_of_map(settings, grid)
-        self.window: CostmapWindow = self._map_window or _window_of(settings)
+        self._maps = StaticMaps.of(maps)
+        grid = _first_map(settings, self._maps)
+        self.window: CostmapWindow = _window_of(settings, grid)
         self.outline_xy = self.footprint.outline_xy(0.8 * self.window.resolution)
-        context = LayerContext(self.window, settings.rolling_window, self.footprint, grid)
+        frame = settings.global_frame.lstrip("/")
+        context = LayerContext(self.window, settings.rolling_window, self.footprint, grid, self._maps, frame)
         self._zones = ZoneLayer(LayerSettings(), context)
-        obstacles = _enabled_layers([settings.obstacles], context)
-        plugins = _enabled_layers(settings.plugin_layers, context)
-        static = _enabled_layers([settings.static], context)
-        inflation = _enabled_layers([settings.inflation], context)
-        self._layers = [*static, *obstacles, self._zones, *plugins, *inflation]
-        self._observing = [*obstacles, *plugins]
+        self._named: Dict[str, Layer] = {
+            each.name: LAYERS.make(each.settings, context) for each in settings.layers
+        }
+        self._layers = self._enabled_layers()
         self._reach_cells = sum(layer.reach_cells for layer in self._layers)
         self._default = UNKNOWN if settings.track_unknown_space else FREE
         self._changed = NO_CELLS
@@ -78,7 +74,7 @@ class LayeredCostmap:
             observation: Beams of one sensor.
             base_in_frame: Robot in the costmap's frame when they were measured.
         """
-        for layer in self._layers:
+        for layer in self._named.values():
             layer.add_observation(observation, base_in_frame)
 
     def update(self, base_in_frame: Pose2, map_in_frame: Pose2 = Pose2()) -> None:
@@ -122,26 +118,43 @@ class LayeredCostmap:
             settings: Parameters of the costmap and its layers.
 
         Returns:
-            The costmap, with the observations of this one unless the size changes; this one if nothing
+            The costmap, with the observations of this one unless the cells change; this one if nothing
             changes.
         """
-        if settings == self.settings:
-            return self
-        changed = LayeredCostmap(settings, self._map, self._map_window)
+        return self if settings == self.settings else self._changed_to(settings, self._maps)
+
+    def with_maps(self, maps: Maps) -> "LayeredCostmap":
+        """Return a costmap with other maps; it keeps the observations unless the cells change.
+
+        Args:
+            maps: Maps of the static layers.
+        """
+        return self._changed_to(self.settings, StaticMaps.of(maps))
+
+    def _changed_to(self, settings: CostmapSettings, maps: StaticMaps) -> "LayeredCostmap":
+        changed = LayeredCostmap(settings, maps)
         changed._zones.take_over(self._zones)
-        if self.window.has_same_size(changed.window):
+        is_aligned = settings.rolling_window or changed.window == self.window
+        if is_aligned and self.window.has_same_size(changed.window):
             changed._take_over_layers(self)
         return changed
 
     def _take_over_layers(self, before: "LayeredCostmap") -> None:
-        """Take over the state of the layers of a costmap of the same size."""
-        replaced = {layer.kind: layer for layer in before._observing}
-        pairs = [(layer, replaced[layer.kind]) for layer in self._observing if layer.kind in replaced]
-        for layer, old in pairs:
-            layer.take_over(old)
-        if pairs:
-            self.window = before.window
-            self.recompute(self.window.everything)
+        """Take over the state of the layers of a costmap with the same cells."""
+        for name, layer in self._named.items():
+            old = before._named.get(name)
+            if old is not None and old.kind == layer.kind:
+                layer.take_over(old)
+        self.window = before.window
+        self.recompute(self.window.everything)
+
+    def _enabled_layers(self) -> List[Layer]:
+        """The layers to apply, in order, with the zones just below the first inflation layer."""
+        enabled = [each for each in self.settings.layers if each.settings.enabled]
+        is_inflation = [isinstance(each.settings, InflationSettings) for each in enabled]
+        place = is_inflation.index(True) if True in is_inflation else len(enabled)
+        layers = [self._named[each.name] for each in enabled]
+        return [*layers[:place], self._zones, *layers[place:]]
 
     def pop_changed_bounds(self) -> CellBounds:
         """Return the block of cells that may have changed since the last call."""
@@ -180,29 +193,34 @@ class LayeredCostmap:
         touching = self.contacts(pose)
         return all(self.contacts(pose @ Pose2(0.0, 0.0, float(turn))) <= touching for turn in turns)
 
-    def clear_outside(self, base_in_frame: Pose2, side: float) -> None:
-        """Clear obstacles (not the map) outside of a square around the robot.
+    def clear_outside(self, base_in_frame: Pose2, side: float, names: Optional[Sequence[str]] = None) -> None:
+        """Clear obstacles (not maps) outside of a square around the robot.
 
         Args:
             base_in_frame: Robot pose in the costmap's frame.
             side: Side of the square [m].
+            names: Layers to clear; None for all.
         """
         bounds = self.window.bounds_around(base_in_frame.x, base_in_frame.y, 0.5 * side)
-        self._recompute_blocks([layer.clear_outside(bounds, self.window) for layer in self._layers])
+        self._recompute_blocks([layer.clear_outside(bounds, self.window) for layer in self._chosen(names)])
 
-    def clear_around(self, base_in_frame: Pose2, side: float) -> None:
-        """Clear obstacles (not the map) inside a square around the robot.
+    def clear_around(self, base_in_frame: Pose2, side: float, names: Optional[Sequence[str]] = None) -> None:
+        """Clear obstacles (not maps) inside a square around the robot.
 
         Args:
             base_in_frame: Robot pose in the costmap's frame.
             side: Side of the square [m].
+            names: Layers to clear; None for all.
         """
         bounds = self.window.bounds_around(base_in_frame.x, base_in_frame.y, 0.5 * side)
-        self._recompute_blocks([layer.clear_inside(bounds) for layer in self._layers])
+        self._recompute_blocks([layer.clear_inside(bounds) for layer in self._chosen(names)])
 
     def reset(self) -> None:
-        """Clear all observations; the map stays."""
-        self._recompute_blocks([layer.clear_outside(NO_CELLS, self.window) for layer in self._layers])
+        """Clear all observations; maps stay."""
+        self._recompute_blocks([layer.clear_outside(NO_CELLS, self.window) for layer in self._named.values()])
+
+    def _chosen(self, names: Optional[Sequence[str]]) -> List[Layer]:
+        return [layer for name, layer in self._named.items() if names is None or name in names]
 
     def _recompute_blocks(self, blocks: Sequence[CellBounds]) -> None:
         changed = NO_CELLS
@@ -221,16 +239,14 @@ class LayeredCostmap:
         return CostmapPlacement(self.window, rows, cols, base_in_frame, map_in_frame)
 
 
-def _enabled_layers(settings: Sequence[LayerSettings], context: LayerContext) -> List[Layer]:
-    return [LAYERS.make(each, context) for each in settings if each.enabled]
+def _first_map(settings: CostmapSettings, maps: StaticMaps) -> Optional[OccupancyGrid]:
+    found = (maps.find(layer.source) for layer in settings.static_layers)
+    return next((each.grid for each in found if each is not None), None)
 
 
-def _window_of_map(settings: CostmapSettings, grid: Optional[OccupancyGrid]) -> Optional[CostmapWindow]:
-    if not settings.static.enabled or grid is None or settings.rolling_window:
-        return None
-    return CostmapWindow(grid.rows, grid.cols, grid.resolution, grid.origin.x, grid.origin.y)
-
-
-def _window_of(settings: CostmapSettings) -> CostmapWindow:
+def _window_of(settings: CostmapSettings, grid: Optional[OccupancyGrid]) -> CostmapWindow:
+    """The cells of the first map, also if its layer is not enabled, or those of the settings."""
+    if grid is not None and not settings.rolling_window:
+        return window_of_map(grid)
     rows, cols = round(settings.height / settings.resolution), round(settings.width / settings.resolution)
     return CostmapWindow(rows, cols, settings.resolution, settings.origin_x, settings.origin_y)

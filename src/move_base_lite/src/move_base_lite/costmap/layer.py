@@ -3,13 +3,14 @@
 Life cycle:
 
 1. A layer is constructed with its settings and a LayerContext whenever the costmap is: at start-up, for a new
-   map and when settings change. ``Layer.take_over`` may then copy the state of the layer it replaces.
+   map and when settings change. ``Layer.take_over`` may then copy the state of the layer of the same name.
 2. ``Layer.add_observation`` receives sensor data as it arrives.
 3. At each update, ``Layer.update`` follows the window and returns the cells that may have changed.
 4. ``Layer.apply`` writes the layer's costs over those of the layers below, in the cells that changed in
    any layer.
 
-Order, from below: static map, obstacles, zones, plugin layers, inflation.
+Layers are applied in the order of the parameter ``plugins``; the zones come just below the first inflation
+layer. A layer that is not enabled receives observations, but is neither updated nor applied.
 
 To add a layer to this package, write a module with settings (a subclass of LayerSettings), a class and its
 Plugin, and add it to ``costmap/registry.py``. ``test/test_costmap_layers.py`` checks the contract.
@@ -23,6 +24,7 @@ import numpy as np
 
 from move_base_lite.costmap.footprint import Footprint
 from move_base_lite.costmap.observation import Observation
+from move_base_lite.costmap.static_maps import MapSource, StaticMap, StaticMaps
 from move_base_lite.costmap.window import NO_CELLS, CellBounds, CostmapWindow
 from move_base_lite.errors import NavigationError, PluginFailed
 from planar import OccupancyGrid, Pose2
@@ -46,13 +48,21 @@ class LayerContext:
         window: Cells of the costmap; it moves if ``is_rolling``.
         is_rolling: Whether the window follows the robot.
         footprint: Outline of the robot.
-        grid: Static map, if there is one.
+        grid: Map of the first static layer, if there is one.
+        maps: Maps of all static layers.
+        global_frame: Frame of the costmap.
     """
 
     window: CostmapWindow
     is_rolling: bool
     footprint: Footprint
     grid: Optional[OccupancyGrid] = None
+    maps: StaticMaps = StaticMaps()
+    global_frame: str = ""
+
+    def find_map(self, source: MapSource) -> Optional[StaticMap]:
+        """Return the map of a source; without one that of ``grid``, if there is one."""
+        return self.maps.find(source) or StaticMaps.of(self.grid).find(source)
 
 
 @dataclass(frozen=True)

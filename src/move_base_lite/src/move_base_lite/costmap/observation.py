@@ -1,8 +1,11 @@
 """Costmap observation: a laser scan or point cloud as costmap layers use it (costmap_2d: Observation)."""
 
+import math
 from dataclasses import dataclass
-from typing import Union
+from functools import cached_property
+from typing import Optional, Union
 
+import numba
 import numpy as np
 
 from planar import Pose2, Scan
@@ -18,21 +21,40 @@ class Observation:
         topic: Topic of the message.
         stamp: Time of the measurement [s].
         sensor_in_base: Origin of the beams in the base frame.
-        angles: (N,) angles of the beams in the sensor frame [rad].
+        beam_angles: (N,) angles of the beams in the sensor frame [rad]; None if ``unit_vectors`` has them.
         ranges: (N,) ranges [m].
         range_min: Shortest valid range [m].
         range_max: Limit of valid ranges [m].
         heights: Heights of the end points above the floor [m], one for all or (N,).
+        sensor_height: Height of the origin of the beams above the floor [m].
+        unit_vectors: (N, 2) directions of the beams in the sensor frame; None if ``beam_angles`` has them.
     """
 
     topic: str
     stamp: float
     sensor_in_base: Pose2
-    angles: np.ndarray
+    beam_angles: Optional[np.ndarray]
     ranges: np.ndarray
     range_min: float = 0.0
     range_max: float = np.inf
     heights: Union[float, np.ndarray] = 0.0
+    sensor_height: float = 0.0
+    unit_vectors: Optional[np.ndarray] = None
+
+    @cached_property
+    def angles(self) -> np.ndarray:
+        """(N,) angles of the beams in the sensor frame [rad]."""
+        if self.beam_angles is not None:
+            return self.beam_angles
+        return np.arctan2(self.directions_xy[:, 1], self.directions_xy[:, 0])
+
+    @cached_property
+    def directions_xy(self) -> np.ndarray:
+        """(N, 2) unit vectors along the beams in the sensor frame."""
+        if self.unit_vectors is not None:
+            return self.unit_vectors
+        assert self.beam_angles is not None
+        return np.column_stack((np.cos(self.beam_angles), np.sin(self.beam_angles)))
 
 
 def observation_from_scan(topic: str, scan: Scan, height: float = 0.0) -> Observation:
@@ -52,11 +74,12 @@ def observation_from_scan(topic: str, scan: Scan, height: float = 0.0) -> Observ
         scan.range_min,
         scan.range_max,
         height,
+        height,
     )
 
 
 def observation_from_points(
-    topic: str, stamp: float, sensor_in_base: Pose2, points_xyz: np.ndarray
+    topic: str, stamp: float, sensor_in_base: Pose2, points_xyz: np.ndarray, sensor_height: float = 0.0
 ) -> Observation:
     """Convert a point cloud to a costmap observation.
 
@@ -66,14 +89,39 @@ def observation_from_points(
         sensor_in_base: Sensor in the base frame.
         points_xyz: (N, 3) points in the base frame, z above the floor [m]; points that are not finite are
             dropped.
+        sensor_height: Height of the sensor above the floor [m].
     """
-    points_xyz = points_xyz[np.isfinite(points_xyz).all(axis=1)]
-    offsets_xy = sensor_in_base.inverse().transform_points(points_xyz[:, :2])
+    base_in_sensor = sensor_in_base.inverse()
+    placement = base_in_sensor.x, base_in_sensor.y, base_in_sensor.yaw
+    directions_xy, ranges, heights = _rays(np.asarray(points_xyz, dtype=np.float64), placement)
     return Observation(
         topic,
         stamp,
         sensor_in_base,
-        np.arctan2(offsets_xy[:, 1], offsets_xy[:, 0]),
-        np.hypot(offsets_xy[:, 0], offsets_xy[:, 1]),
-        heights=points_xyz[:, 2],
+        None,
+        ranges,
+        heights=heights,
+        sensor_height=sensor_height,
+        unit_vectors=directions_xy,
     )
+
+
+@numba.njit(cache=True)
+def _rays(points_xyz, placement):
+    """Directions, lengths and end heights of the rays to the finite points, in the plane of the sensor."""
+    x, y, yaw = placement
+    c, s = math.cos(yaw), math.sin(yaw)
+    directions = np.empty((points_xyz.shape[0], 2))
+    ranges, heights = np.empty(points_xyz.shape[0]), np.empty(points_xyz.shape[0])
+    count = 0
+    for i in range(points_xyz.shape[0]):
+        dx = x + c * points_xyz[i, 0] - s * points_xyz[i, 1]
+        dy = y + s * points_xyz[i, 0] + c * points_xyz[i, 1]
+        length = math.sqrt(dx * dx + dy * dy)
+        if not (math.isfinite(length) and math.isfinite(points_xyz[i, 2])):
+            continue
+        ranges[count], heights[count] = length, points_xyz[i, 2]
+        directions[count, 0] = dx / length if length > 0.0 else 1.0
+        directions[count, 1] = dy / length if length > 0.0 else 0.0
+        count += 1
+    return directions[:count], ranges[:count], heights[:count]

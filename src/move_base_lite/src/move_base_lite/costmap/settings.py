@@ -1,15 +1,33 @@
 """Parameters of a costmap."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Tuple
 
 from move_base_lite.costmap.layer import LayerSettings
 from move_base_lite.costmap.layers.inflation import InflationSettings
-from move_base_lite.costmap.layers.obstacles import ObstacleSettings
+from move_base_lite.costmap.layers.obstacles import ObstacleSettings, SourceSettings
 from move_base_lite.costmap.layers.static import StaticSettings
 from planar.config.parameters import POSITIVE, at_least, check_parameters, parameter
 from planar.config.settings import check
+
+
+@dataclass(frozen=True)
+class NamedLayer:
+    """An entry of a costmap's layers.
+
+    Attributes:
+        name: Name of the layer, the namespace of its parameters.
+        settings: Settings of the layer; their type selects its class.
+    """
+
+    name: str
+    settings: LayerSettings
+
+
+def named_layers(**settings: LayerSettings) -> Tuple[NamedLayer, ...]:
+    """Return layers in the order of the arguments, named as these."""
+    return tuple(NamedLayer(name, each) for name, each in settings.items())
 
 
 @dataclass(frozen=True)
@@ -20,10 +38,7 @@ class CostmapSettings:
     ``parameter(...)``.
 
     Attributes:
-        static: Settings of the static layer.
-        obstacles: Settings of the obstacle layer.
-        plugin_layers: Settings of further layers, applied below inflation.
-        inflation: Settings of the inflation layer.
+        layers: The layers, in the order in which they are applied.
     """
 
     global_frame: str = parameter("map", "frame in which the costmap lies")
@@ -52,11 +67,25 @@ class CostmapSettings:
         False, "whether cells without observations are unknown rather than free"
     )
     always_send_full_costmap: bool = parameter(False, "publish the complete costmap instead of updates")
-    static: StaticSettings = field(default_factory=lambda: StaticSettings(enabled=False))
-    obstacles: ObstacleSettings = field(default_factory=ObstacleSettings)
-    plugin_layers: Tuple[LayerSettings, ...] = ()
-    inflation: InflationSettings = field(default_factory=InflationSettings)
+    layers: Tuple[NamedLayer, ...] = named_layers(
+        obstacle_layer=ObstacleSettings(), inflation_layer=InflationSettings()
+    )
 
     def __post_init__(self):
         check_parameters(self)
         check(len(self.footprint) not in (1, 2), "footprint", "at least 3 points", self.footprint)
+
+    @property
+    def obstacle_layers(self) -> Tuple[ObstacleSettings, ...]:
+        """Settings of the obstacle layers."""
+        return tuple(each.settings for each in self.layers if isinstance(each.settings, ObstacleSettings))
+
+    @property
+    def sources(self) -> Tuple[SourceSettings, ...]:
+        """Observation sources of all obstacle layers."""
+        return tuple(source for layer in self.obstacle_layers for source in layer.sources)
+
+    @property
+    def static_layers(self) -> Tuple[StaticSettings, ...]:
+        """Settings of the static layers."""
+        return tuple(each.settings for each in self.layers if isinstance(each.settings, StaticSettings))

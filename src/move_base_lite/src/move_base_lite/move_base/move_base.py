@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass
 from functools import partial
-from typing import Callable, Optional
+from typing import Callable, FrozenSet, Optional
 
 from move_base_lite.config import NavigatorSettings
-from move_base_lite.costmap import observation_from_scan
+from move_base_lite.costmap import Maps, MapSource, StaticMap, StaticMaps, observation_from_scan
 from move_base_lite.errors import NavigationError, RobotLost
 from move_base_lite.move_base.robot_poses import RobotPoses
 from move_base_lite.move_base.sensor_inputs import Measurement, SensorInputs
@@ -42,7 +42,8 @@ class MoveBase:
     Args:
         settings: Parameters of move_base, its costmaps, planners and recovery behaviours.
         poses: Poses of the robot: tf, or a PoseHistory.
-        grid: Static map, if it is known; ticks before the first one do nothing if a map is expected.
+        grid: Static map, or those of several static layers, as far as they are known; ticks before the last
+            of them do nothing.
         zones: Keep-out and speed zones.
         full_name: Returns the name of a topic for messages to people.
 
@@ -54,7 +55,7 @@ class MoveBase:
         self,
         settings: NavigatorSettings,
         poses: RobotPoses,
-        grid: Optional[OccupancyGrid] = None,
+        grid: Maps = None,
         zones: Zones = Zones(),
         full_name: Callable[[str], str] = lambda topic: topic,
     ):
@@ -63,8 +64,8 @@ class MoveBase:
         self._scan_topic = settings.scan_topic
         self._navigator: Optional[Navigator] = None
         self._commanded, self._usable_at = Twist2(), None  # type: Twist2, Optional[float]
-        if grid is not None or not settings.global_costmap.static.enabled:
-            self._navigator = Navigator(settings, grid, zones)
+        self._maps = StaticMaps.of(grid)
+        self._start_navigator()
 
     @property
     def navigator(self) -> Navigator:
@@ -138,16 +139,40 @@ class MoveBase:
         self.navigator.clear_goal()
         return Decision(Status.ABORTED, Twist2(), text, outcome=GoalOutcome(error.outcome, error.code, text))
 
+    @property
+    def map_sources(self) -> FrozenSet[MapSource]:
+        """Where the static layers of both costmaps have their maps from."""
+        costmaps = self._settings.global_costmap, self._settings.local_costmap
+        return frozenset(layer.source for costmap in costmaps for layer in costmap.static_layers)
+
+    def _start_navigator(self) -> None:
+        """Create the Navigator once the maps of all static layers are known."""
+        if None not in [self._maps.find(source) for source in self.map_sources]:
+            self._navigator = Navigator(self._settings, self._maps, self._zones)
+
     def set_map(self, grid: OccupancyGrid) -> None:
-        """Set or replace the static map; observations are dropped.
+        """Set or replace the map of all static layers; a costmap whose cells change drops its observations.
 
         Args:
             grid: Static map.
         """
+        self._set_maps(StaticMaps.of(grid))
+
+    def set_layer_map(self, source: MapSource, static_map: StaticMap) -> None:
+        """Set or replace the map of the static layers with one source (see set_map).
+
+        Args:
+            source: Where these layers have their map from.
+            static_map: Their map.
+        """
+        self._set_maps(self._maps.with_map(source, static_map))
+
+    def _set_maps(self, maps: StaticMaps) -> None:
+        self._maps = maps
         if self._navigator is None:
-            self._navigator = Navigator(self._settings, grid, self._zones)
+            self._start_navigator()
         else:
-            self._navigator.set_map(grid)
+            self._navigator.set_map(maps)
 
     def update_settings(self, settings: NavigatorSettings) -> None:
         """Apply other settings; goal and plan stay."""

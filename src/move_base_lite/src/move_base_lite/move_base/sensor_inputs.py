@@ -66,7 +66,7 @@ class SensorInputs:
         self.frames = map_frame, odom_frame, settings.local_costmap.robot_base_frame.lstrip("/")
         self.update_settings(settings)
         self.sources: Dict[str, SourceSettings] = {
-            source.topic: source for costmap in costmaps for source in costmap.obstacles.sources
+            source.topic: source for costmap in costmaps for source in costmap.sources
         }
         self.reset()
         self._latest_stamps: Dict[str, float] = {}

@@ -1,6 +1,6 @@
 """Components of the Navigator: global planner, controller, costmaps and the tracker of moving obstacles."""
 
-from typing import Any, Mapping, Optional, Sequence, Tuple
+from typing import Any, Mapping, Sequence, Tuple
 
 import numpy as np
 
@@ -12,14 +12,14 @@ from move_base_lite.control import (
     ControllerSettings,
     LocalPlanner,
 )
-from move_base_lite.costmap import Observation
+from move_base_lite.costmap import Maps, Observation
 from move_base_lite.dynamic_obstacles import DynamicObstacleTracker
 from move_base_lite.navigator.costmaps import Costmaps
 from move_base_lite.navigator.inputs import RobotState
 from move_base_lite.navigator.motion_prediction import predict_motion
 from move_base_lite.navigator.zones import Zones
 from move_base_lite.planning import GLOBAL_PLANNERS, PlanRequest
-from planar import OccupancyGrid, Pose2, Twist2
+from planar import Pose2, Twist2
 
 
 class NavigatorComponents:
@@ -35,27 +35,27 @@ class NavigatorComponents:
         costmaps: Global and local costmap.
     """
 
-    def __init__(self, settings: NavigatorSettings, grid: Optional[OccupancyGrid], zones: Zones):
+    def __init__(self, settings: NavigatorSettings, maps: Maps, zones: Zones):
         """Construct the components.
 
         Args:
             settings: Settings of the Navigator.
-            grid: Static map, if there is one.
+            maps: Maps of the static layers.
             zones: Keep-out and speed zones.
         """
         self.settings, self.zones = settings, zones
         self.latency, self.active_command = 0.0, Twist2()
         self.planner = GLOBAL_PLANNERS.make(settings.planner)
-        self.set_map(grid)
+        self.reset(maps)
         self.reset_controller()
 
-    def set_map(self, grid: Optional[OccupancyGrid]) -> None:
-        """Replace the static map; observations are dropped.
+    def reset(self, maps: Maps) -> None:
+        """Drop all observations.
 
         Args:
-            grid: Static map; None for none.
+            maps: Maps of the static layers.
         """
-        self.costmaps = Costmaps(self.settings, grid, self.zones)
+        self.costmaps = Costmaps(self.settings, maps, self.zones)
         self._obstacle_tracker = DynamicObstacleTracker()
 
     def reset_controller(self) -> None:

@@ -5,10 +5,11 @@ from typing import Dict, List, Optional, Sequence, Tuple
 
 from move_base_lite.config import NavigatorSettings
 from move_base_lite.costmap import INSCRIBED, LETHAL, UNKNOWN, LayeredCostmap, Observation, Polygon
+from move_base_lite.costmap.static_maps import Maps
 from move_base_lite.errors import GoalBlocked, OutOfMap
 from move_base_lite.navigator.inputs import RobotState
 from move_base_lite.navigator.zones import NavigationZone, Zones
-from planar import OccupancyGrid, Pose2
+from planar import Pose2
 
 TIME_TOLERANCE = 1e-6
 
@@ -21,12 +22,12 @@ class Costmaps:
         local_costmap: Costmap for control, around the robot, in the odometry frame.
     """
 
-    def __init__(self, settings: NavigatorSettings, grid: Optional[OccupancyGrid], zones: Zones):
+    def __init__(self, settings: NavigatorSettings, maps: Maps, zones: Zones):
         """Create the costmaps without observations.
 
         Args:
             settings: Settings of both costmaps.
-            grid: Static map, if there is one.
+            maps: Maps of the static layers.
             zones: Keep-out zones to apply.
         """
         self._settings = settings
@@ -34,8 +35,8 @@ class Costmaps:
         self._applied_zones: Tuple[List[NavigationZone], List[NavigationZone]] = ([], [])
         self._next_updates = [-math.inf, -math.inf]
         self._last_stamps: Dict[str, float] = {}
-        self.global_costmap = LayeredCostmap(settings.global_costmap, grid)
-        self.local_costmap = LayeredCostmap(settings.local_costmap, grid)
+        self.global_costmap = LayeredCostmap(settings.global_costmap, maps)
+        self.local_costmap = LayeredCostmap(settings.local_costmap, maps)
 
     def update_settings(self, settings: NavigatorSettings) -> None:
         """Apply other settings; observations stay unless the cells change."""
@@ -43,8 +44,13 @@ class Costmaps:
         self.global_costmap = self.global_costmap.with_settings(settings.global_costmap)
         self.local_costmap = self.local_costmap.with_settings(settings.local_costmap)
 
+    def set_maps(self, maps: Maps) -> None:
+        """Replace the maps; observations stay unless the cells change."""
+        self.global_costmap = self.global_costmap.with_maps(maps)
+        self.local_costmap = self.local_costmap.with_maps(maps)
+
     def clear(self) -> None:
-        """Clear all obstacles that are not in the static map."""
+        """Clear all obstacles that are not in a map."""
         self.local_costmap.reset()
         self.global_costmap.reset()
 
@@ -88,7 +94,8 @@ class Costmaps:
             now: Time [s].
         """
         for costmap in (self._settings.local_costmap, self._settings.global_costmap):
-            for source in costmap.obstacles.sources if costmap.obstacles.enabled else ():
+            enabled = (layer for layer in costmap.obstacle_layers if layer.enabled)
+            for source in (source for layer in enabled for source in layer.sources):
                 if 0.0 < source.expected_update_rate < now - self.last_stamp(source.topic):
                     return source.topic
         return None

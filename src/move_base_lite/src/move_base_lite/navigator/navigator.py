@@ -6,7 +6,7 @@ from typing import Any, Optional, Sequence
 import numpy as np
 
 from move_base_lite.config import NavigatorSettings
-from move_base_lite.costmap import LayeredCostmap, Observation
+from move_base_lite.costmap import LayeredCostmap, Maps, Observation
 from move_base_lite.errors import PlanningError, PluginFailed
 from move_base_lite.navigator.components import NavigatorComponents
 from move_base_lite.navigator.decision import (
@@ -24,7 +24,7 @@ from move_base_lite.navigator.inputs import NavigatorInputs, RobotState, accepts
 from move_base_lite.navigator.state_machine import GoalAborted, GoalSucceeded, step
 from move_base_lite.navigator.zones import Zones
 from move_base_lite.planning import Potential
-from planar import OccupancyGrid, Pose2, Twist2
+from planar import Pose2, Twist2
 from planar.deprecation import renamed_method
 from planar.geometry.pose import check_pose
 
@@ -38,14 +38,12 @@ class Navigator:
 
     Args:
         settings: Parameters of move_base, its costmaps, planners and recovery behaviours.
-        grid: Static map, if there is one.
+        grid: Static map, if there is one, or the maps of several static layers.
         zones: Keep-out and speed zones.
     """
 
-    def __init__(
-        self, settings: NavigatorSettings, grid: Optional[OccupancyGrid] = None, zones: Zones = Zones()
-    ):
-        self._grid, self.zones = grid, zones
+    def __init__(self, settings: NavigatorSettings, grid: Maps = None, zones: Zones = Zones()):
+        self._maps, self.zones = grid, zones
         self._components = NavigatorComponents(settings, grid, zones)
         self._new_goal: Optional[Pose2] = None
         self._execution: Optional[GoalExecution] = None
@@ -135,17 +133,17 @@ class Navigator:
 
     def reset(self) -> None:
         """Drop the goal and all observations, as after a jump of time."""
-        self.set_map(self._grid)
+        self._components.reset(self._maps)
         self.clear_goal()
 
-    def set_map(self, grid: Optional[OccupancyGrid]) -> None:
-        """Replace the static map; observations are dropped.
+    def set_map(self, grid: Maps) -> None:
+        """Replace the static map; a costmap whose cells change drops its observations.
 
         Args:
-            grid: Static map; None for none.
+            grid: Static map, or the maps of several static layers; None for none.
         """
-        self._grid = grid
-        self._components.set_map(grid)
+        self._maps = grid
+        self._components.costmaps.set_maps(grid)
 
     def update_settings(self, settings: NavigatorSettings) -> None:
         """Apply other settings; goal and plan stay.

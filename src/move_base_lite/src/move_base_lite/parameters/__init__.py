@@ -1,5 +1,6 @@
 """Conversion of move_base's parameters, a nested dictionary, to the settings of a Navigator."""
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, Tuple, Union
 
@@ -12,16 +13,33 @@ from move_base_lite.parameters.planners import (
     planner_settings,
 )
 from move_base_lite.parameters.reader import ParameterReader, subtree
-from move_base_lite.parameters.recoveries import recovery_settings
+from move_base_lite.parameters.recoveries import DEFAULT_RECOVERIES, recovery_settings
+from planar.config.without_effect import SettingsWithoutEffect
 from planar.config.yaml_table import read_table
 
-# Parameters that are accepted without effect, or read elsewhere: for holonomic robots, for details of the
-# official code, or unused there.
-_MOVE_BASE_IGNORED = {
-    "recovery_behaviors", "latch_xy_goal_tolerance",
-    "strict_params", "zones_file", "footprint", "robot_radius", "footprint_padding", "obstacle_range",
-     "raytrace_range", "actionlib_status_frequency", "status_list_timeout",
+# Parameters that are read by other means.
+_ELSEWHERE = {
+    "recovery_behaviors", "latch_xy_goal_tolerance", "strict_params", "zones_file", "footprint",
+    "robot_radius", "footprint_padding", "obstacle_range", "raytrace_range", "actionlib_status_frequency",
+    "status_list_timeout",
 }  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class ReadParameters:
+    """Result of reading move_base's parameters.
+
+    Attributes:
+        settings: The settings.
+        warnings: Warnings about unknown, deprecated or invalid parameters.
+        unknown: Warnings about unknown parameters among them.
+        without_effect: Known parameters that have no effect.
+    """
+
+    settings: NavigatorSettings
+    warnings: List[str]
+    unknown: List[str]
+    without_effect: SettingsWithoutEffect
 
 
 def load_settings(*paths: Union[str, Path], **chosen: Any) -> NavigatorSettings:
@@ -61,23 +79,35 @@ def settings_from_parameters(
             refused.
 
     Returns:
-        The settings, and warnings about unknown, deprecated or ignored parameters.
+        The settings, and warnings about unknown, deprecated or invalid parameters.
 
     Raises:
         SettingsError: A value is invalid; the text states the full name of the parameter.
     """
+    found = read_parameters(parameters, where, is_lenient)
+    return found.settings, found.warnings
+
+
+def read_parameters(
+    parameters: Mapping[str, Any], where: str = "", is_lenient: bool = False
+) -> ReadParameters:
+    """Read move_base's parameters (see settings_from_parameters)."""
     reader = ParameterReader(where, is_lenient)
-    move_base = reader.read(MoveBaseSettings, parameters, "", {*_MOVE_BASE_IGNORED, *REGISTRIES})
+    move_base = reader.read(MoveBaseSettings, parameters, "", {*_ELSEWHERE, *REGISTRIES})
     costmaps = {
         name: costmap_settings(reader, subtree(parameters, name), name, parameters)
         for name in ("global_costmap", "local_costmap")
     }
+    recoveries = recovery_settings(reader, parameters, move_base, costmaps["local_costmap"])
     settings = NavigatorSettings(
         move_base=move_base,
         planner=planner_settings(reader, parameters),
         controller=controller_settings(reader, parameters),
         extensions=other_settings(reader, parameters),
-        recoveries=recovery_settings(reader, parameters, move_base, costmaps["local_costmap"]),
+        recoveries=recoveries,
         **costmaps,
     )
-    return settings, reader.warnings
+    plugins = {name for registry in REGISTRIES.values() for name in registry.namespaces}
+    used = {*costmaps, *plugins, *(each.name for each in recoveries), *DEFAULT_RECOVERIES}
+    reader.report_unused(parameters, "", used, "no plugin of this name is configured")
+    return ReadParameters(settings, reader.warnings, reader.unknown, reader.without_effect)

@@ -1,26 +1,54 @@
 """Parameters of costmaps and their layers."""
 
+import re
 from dataclasses import replace
 from typing import Any, Dict, List, Mapping, Set, Tuple
 
 import yaml
 
-from move_base_lite.costmap import LAYERS, CostmapSettings, Layer, LayerSettings
-from move_base_lite.costmap.layers.inflation import INFLATION, InflationSettings
+from move_base_lite.costmap import LAYERS, CostmapSettings, Layer
+from move_base_lite.costmap.layers.inflation import INFLATION
 from move_base_lite.costmap.layers.obstacles import OBSTACLES, VOXEL, ObstacleSettings, SourceSettings
-from move_base_lite.costmap.layers.static import STATIC, StaticSettings
-from move_base_lite.parameters.reader import ParameterReader, Tree, parameter_names, subtree
+from move_base_lite.costmap.layers.static import STATIC
+from move_base_lite.costmap.settings import NamedLayer
+from move_base_lite.parameters.reader import ParameterReader, Tree, subtree
 from planar import SettingsError
 from planar.config.bounded_yaml import load_yaml
 from planar.extensions import Plugin
+from planar.extensions.registry import short_name
 
 # Parameters that costmaps inherit from move_base's namespace.
 INHERITED = ("footprint", "robot_radius", "footprint_padding")
-# Parameters that are accepted without effect, or read elsewhere.
-_COSTMAP_IGNORED = {
-    "plugins", "static_map", "map_type", "inscribed_radius", "circumscribed_radius",
-    "footprint_topic", "published_footprint_topic",
-}  # fmt: skip
+# Parameters that costmap_2d also searches in the namespaces above that of move_base.
+SEARCHED = ("footprint", "robot_radius", "obstacle_range", "raytrace_range")
+# Parameters that are read by other means.
+_ELSEWHERE = {"plugins", "footprint_topic"}
+_VOXEL_KEYS = (
+    "origin_z", "z_resolution", "z_voxels", "mark_threshold", "unknown_threshold", "publish_voxel_map",
+)  # fmt: skip
+# Parameters of a layer that may stand in the costmap's namespace; they then apply to all layers of the kind,
+# also over the layer's own (costmap_2d_ros: copyParentParameters).
+_OF_COSTMAP: Dict[str, Tuple[str, ...]] = {
+    STATIC.name: ("map_topic", "unknown_cost_value", "lethal_cost_threshold", "track_unknown_space"),
+    OBSTACLES.name: ("max_obstacle_height", "raytrace_range", "obstacle_range", "track_unknown_space"),
+    VOXEL.name: _VOXEL_KEYS,
+    INFLATION.name: ("cost_scaling_factor", "inflation_radius"),
+}
+# Those among them that the costmap or the sources of other layers read, too.
+_SHARED = {"track_unknown_space", "raytrace_range", "obstacle_range"}
+# Official parameters that nothing reads, with the reason.
+_WITHOUT_EFFECT = {
+    "static_map": "plugins lists the layers",
+    "map_type": "plugins lists the layers",
+    "inscribed_radius": "it follows from the footprint",
+    "circumscribed_radius": "it follows from the footprint",
+    **{
+        key: f"plugins lists no {kind}"
+        for kind, keys in _OF_COSTMAP.items()
+        for key in keys
+        if key not in _SHARED
+    },
+}
 
 
 def costmap_settings(reader: ParameterReader, values: Tree, name: str, parameters: Tree) -> CostmapSettings:
@@ -35,37 +63,32 @@ def costmap_settings(reader: ParameterReader, values: Tree, name: str, parameter
     Raises:
         SettingsError: A value is invalid.
     """
-    values = with_plugin_list(values, f"{reader.where}{name}/")
+    values = with_layer_tables(values, f"{reader.where}{name}/")
     for inherited in INHERITED:
         if inherited in parameters:
             values.setdefault(inherited, parameters[inherited])
     if "footprint" in values:
         values["footprint"] = parse_footprint(values["footprint"], f"{reader.where}{name}/footprint")
-    settings = reader.read(CostmapSettings, values, name + "/", _COSTMAP_IGNORED)
-    static = StaticSettings(enabled=False)
-    obstacles = ObstacleSettings(enabled=False)
-    inflation = InflationSettings(enabled=False)
-    plugin_layers: List[LayerSettings] = []
-    for layer, kind in layer_plugins(reader, values, name).items():
-        tree, where = subtree(values, layer), f"{name}/{layer}/"
+    plugins = layer_plugins(reader, values, name)
+    for key in [key for key in _WITHOUT_EFFECT if key in values]:
+        reader.without_effect.add(f"{reader.where}{name}/{key}", _WITHOUT_EFFECT[key])
+    elsewhere = {*_ELSEWHERE, *_WITHOUT_EFFECT, *_SHARED} - {"track_unknown_space"}
+    settings = reader.read(CostmapSettings, values, name + "/", elsewhere)
+    reader.report_unused(values, name + "/", dict(plugins), "plugins lists no layer of this name")
+    layers = []
+    for layer, kind in plugins:
+        tree, where = dict(subtree(values, layer)), f"{name}/{layer}/"
         if kind in (OBSTACLES, VOXEL):
-            tree = {"track_unknown_space": settings.track_unknown_space, **tree}
-            earlier = obstacles.sources
-            obstacles = _obstacle_settings(reader, kind, tree, where, [values, parameters])
-            obstacles = replace(obstacles, sources=(*earlier, *obstacles.sources))
-        elif kind is STATIC:
-            static = reader.read_plugin(kind, tree, where)
-        elif kind is INFLATION:
-            inflation = reader.read_plugin(kind, tree, where)
+            tree.setdefault("track_unknown_space", settings.track_unknown_space)
+            layer_settings = _obstacle_settings(reader, kind, tree, where, [values, parameters])
         else:
-            plugin_layers.append(reader.read_plugin(kind, tree, where))
-    return replace(
-        settings, static=static, obstacles=obstacles, plugin_layers=tuple(plugin_layers), inflation=inflation
-    )
+            layer_settings = reader.read_plugin(kind, tree, where)
+        layers.append(NamedLayer(layer, layer_settings))
+    return replace(settings, layers=tuple(layers))
 
 
-def with_plugin_list(values: Mapping[str, Any], where: str) -> Dict[str, Any]:
-    """Convert a costmap's parameters from before ``plugins`` to a list of plugins, as costmap_2d does.
+def with_layer_tables(values: Mapping[str, Any], where: str) -> Dict[str, Any]:
+    """Convert a costmap's parameters to a list of plugins and one table for each layer, as costmap_2d does.
 
     Args:
         values: Parameters of the costmap.
@@ -74,34 +97,45 @@ def with_plugin_list(values: Mapping[str, Any], where: str) -> Dict[str, Any]:
     Raises:
         SettingsError: The parameters of a layer are not a table.
     """
-    if "plugins" in values:
-        return dict(values)
-    kinds = {"static_layer": STATIC} if values.get("static_map") else {}
-    kinds["obstacle_layer"] = VOXEL if values.get("map_type") == "voxel" else OBSTACLES
-    kinds["inflation_layer"] = INFLATION
-    moved: Dict[str, Any] = {"plugins": [], **{layer: {} for layer in kinds}}
-    for layer, kind in kinds.items():
-        if not isinstance(values.get(layer, {}), dict):
-            raise SettingsError(f"{where}{layer} must be a table of parameters, got {values[layer]!r}")
-        moved["plugins"].append({"name": layer, "type": kind.name})
-    all_keys = set().union(*map(_keys_of, (STATIC, OBSTACLES, INFLATION)))
-    for key, value in values.items():
-        for layer, kind in kinds.items():
-            if key in _keys_of(kind) or (isinstance(value, dict) and layer == "obstacle_layer"):
-                moved[layer][key] = value
-        if not (isinstance(value, dict) or key in all_keys):
-            moved[key] = value
-    if "track_unknown_space" in values:
-        moved["track_unknown_space"] = values["track_unknown_space"]
-    return moved
+    tables = dict(values) if "plugins" in values else _with_plugin_list(values)
+    copied: Set[str] = set()
+    for layer, kind in _listed(tables["plugins"]):
+        own = tables.get(layer, {})
+        if not isinstance(own, dict):
+            raise SettingsError(f"{where}{layer} must be a table of parameters, got {own!r}")
+        moved = {key: values[key] for key in _OF_COSTMAP.get(kind, ()) if key in values}
+        tables[layer] = {**own, **moved}
+        copied.update(moved)
+    return {key: each for key, each in tables.items() if key not in copied - _SHARED}
 
 
-def _keys_of(kind: Plugin[Layer]) -> Set[str]:
-    """Parameters of a layer that stand in the costmap's namespace if there is no list of plugins."""
-    return {*parameter_names(kind.settings), *kind.meaningless} - {"enabled"}
+def _with_plugin_list(values: Mapping[str, Any]) -> Dict[str, Any]:
+    """Convert parameters from before ``plugins`` (costmap_2d_ros: loadOldParameters)."""
+    obstacles = VOXEL if values.get("map_type") == "voxel" else OBSTACLES
+    kinds = {"obstacle_layer": obstacles.name, "inflation_layer": INFLATION.name}
+    if values.get("static_map"):
+        kinds = {"static_layer": STATIC.name, **kinds}
+    sources = str(values.get("observation_sources", "")).split()
+    moved = {"max_obstacle_height", "observation_sources", *sources, *_OF_COSTMAP[OBSTACLES.name]}
+    own, dropped = values.get("obstacle_layer", {}), {"plugins", "static_map", "map_type", *moved} - _SHARED
+    tables = {key: each for key, each in values.items() if key not in dropped}
+    tables["plugins"] = [{"name": layer, "type": kind} for layer, kind in kinds.items()]
+    if isinstance(own, dict):
+        tables["obstacle_layer"] = {**own, **{key: values[key] for key in moved if key in values}}
+    return tables
 
 
-def layer_plugins(reader: ParameterReader, values: Tree, name: str) -> Dict[str, Plugin[Layer]]:
+def _listed(plugins: Any) -> List[Tuple[str, str]]:
+    """Names and official types of the layers in a list of plugins, which may be malformed."""
+    official = {short_name(kind): kind for kind in _OF_COSTMAP}
+    return [
+        (str(each.get("name")), official.get(short_name(str(each.get("type"))), ""))
+        for each in (plugins if isinstance(plugins, list) else [])
+        if isinstance(each, dict)
+    ]
+
+
+def layer_plugins(reader: ParameterReader, values: Tree, name: str) -> List[Tuple[str, Plugin[Layer]]]:
     """Find the plugins of a costmap's layers; unknown types are skipped with a warning.
 
     Args:
@@ -110,12 +144,12 @@ def layer_plugins(reader: ParameterReader, values: Tree, name: str) -> Dict[str,
         name: Namespace of the costmap.
 
     Returns:
-        Plugin by the name of the layer, in order.
+        Names and plugins of the layers, in order; each name once.
 
     Raises:
         SettingsError: ``plugins`` is not a list of names and types.
     """
-    layers = {}
+    layers: Dict[str, Plugin[Layer]] = {}
     plugins = values["plugins"]
     for plugin in plugins if isinstance(plugins, list) else [plugins]:
         if not isinstance(plugin, dict) or not all(
@@ -125,13 +159,16 @@ def layer_plugins(reader: ParameterReader, values: Tree, name: str) -> Dict[str,
                 f"{reader.where}{name}/plugins must be a list of {{name, type}}, got {plugin!r}"
             )
         kind = reader.find(LAYERS, str(plugin["type"]), f"{name}/plugins", is_package_needed=False)
-        if kind is not None:
-            layers[plugin["name"]] = kind
-        else:
+        if kind is None:
             reader.warnings.append(
                 f"{reader.where}{name}/plugins: {plugin['name']} has the unknown type {plugin['type']}"
             )
-    return layers
+        elif plugin["name"] in layers:
+            entry = f"{reader.where}{name}/plugins: the second entry {plugin['name']}"
+            reader.without_effect.add(entry, "each layer needs a name of its own")
+        else:
+            layers[plugin["name"]] = kind
+    return [*layers.items()]
 
 
 def _obstacle_settings(
@@ -139,8 +176,9 @@ def _obstacle_settings(
 ) -> ObstacleSettings:
     """Read an obstacle layer and its sources; ranges are also searched in the enclosing namespaces."""
     layer = reader.read_plugin(kind, tree, where)
-    sources = []
-    for name in str(tree.get("observation_sources", "")).split():
+    sources, names = [], str(tree.get("observation_sources", "")).split()
+    reader.report_unused(tree, where, names, "observation_sources does not list it")
+    for name in names:
         own = {"topic": name, **subtree(tree, name)}
         for key in ("obstacle_range", "raytrace_range"):
             for namespace in (tree, *outer):
@@ -164,7 +202,12 @@ def parse_footprint(value: Any, name: str) -> Tuple[Tuple[float, float], ...]:
         SettingsError: The value is not a list of points.
     """
     try:
-        points = load_yaml(value) if isinstance(value, str) else value
-        return tuple((float(x), float(y)) for x, y in points)
+        points = load_yaml(_with_commas(value)) if isinstance(value, str) else value
+        return tuple((float(x), float(y)) for x, y in points or ())
     except (yaml.YAMLError, TypeError, ValueError, OverflowError):
         raise SettingsError(f"{name} must be a list of points [x, y], got {value!r}") from None
+
+
+def _with_commas(text: str) -> str:
+    """Separate points and numbers by commas, which costmap_2d does not need: ``[[0 1] [2 3] [4 5]]``."""
+    return re.sub(r"(?<=[\d.])\s+(?=[\d.+-])|(?<=\])\s*(?=\[)", ", ", text)

@@ -1,10 +1,11 @@
 """Reading of settings from nested dictionaries of parameters."""
 
-from typing import Any, Dict, Iterable, List, Mapping, Optional, Type, TypeVar
+from typing import Any, Container, Dict, Iterable, List, Mapping, Optional, Set, Type, TypeVar
 
 from planar.config.hints import hint
 from planar.config.parameters import parameters_of
 from planar.config.settings import settings_from
+from planar.config.without_effect import SettingsWithoutEffect
 from planar.extensions import Plugin, PluginError, Registry
 
 Tree = Mapping[str, Any]
@@ -14,7 +15,7 @@ LEFT_BY_RECONFIGURE = "restore_defaults"
 
 
 class ParameterReader:
-    """Reads settings from nested dictionaries and collects warnings.
+    """Reads settings from nested dictionaries; collects warnings and settings without effect.
 
     Args:
         where: Prefix of parameter names in messages.
@@ -22,10 +23,14 @@ class ParameterReader:
 
     Attributes:
         warnings: Warnings so far.
+        unknown: Warnings about unknown parameters among them.
+        without_effect: Parameters that are known and have no effect.
     """
 
     def __init__(self, where: str, is_lenient: bool = False):
         self.where = where
+        self.unknown: List[str] = []
+        self.without_effect = SettingsWithoutEffect()
         self.warnings: List[str] = []
         self._on_invalid = self._ignore_value if is_lenient else None
 
@@ -36,7 +41,7 @@ class ParameterReader:
             kind: Dataclass of the settings.
             values: Parameters by name.
             prefix: Namespace of the parameters, for messages.
-            ignore: Names of parameters that have no effect and cause no warning.
+            ignore: Names of parameters that are read by other means.
 
         Raises:
             SettingsError: A value is invalid.
@@ -72,7 +77,32 @@ class ParameterReader:
                 self.warnings.append(f"parameter {self.where}{prefix}{old} is deprecated, use {new} instead")
                 present.setdefault(new, present.pop(old))
         present = plugin.translate(renamed(present, plugin.synonyms))
-        return self.read(plugin.settings, present, prefix, plugin.meaningless)
+        ineffective = self.take_ineffective(plugin, present, prefix)
+        return self.read(plugin.settings, present, prefix, {*plugin.elsewhere, *ineffective})
+
+    def read_ignored(self, plugin: Plugin, values: Tree, prefix: str) -> None:
+        """Report the values of a namespace from which a plugin reads nothing.
+
+        Args:
+            plugin: The plugin.
+            values: Parameters by name.
+            prefix: Namespace of the parameters, for messages.
+        """
+        known = self.take_ineffective(plugin, values, prefix)
+        self.report_unknown(set(values) - known, prefix, known)
+
+    def take_ineffective(self, plugin: Plugin, values: Tree, prefix: str) -> Set[str]:
+        """Add the values of a plugin's parameters without effect; return the names of these parameters.
+
+        Args:
+            plugin: The plugin.
+            values: Parameters by name.
+            prefix: Namespace of the parameters.
+        """
+        for each in plugin.without_effect:
+            if each.name in values and not each.is_fulfilled_by(values[each.name]):
+                self.without_effect.add(f"{self.where}{prefix}{each.name}", each.meaning)
+        return {each.name for each in plugin.without_effect}
 
     def find(
         self, registry: Registry[T], name: str, key: str, is_package_needed: bool = True
@@ -108,7 +138,21 @@ class ParameterReader:
         for name in names:
             if name == LEFT_BY_RECONFIGURE:
                 continue
-            self.warnings.append(f"unknown parameter {self.where}{prefix}{name}{hint(name, known)}")
+            self.unknown.append(f"unknown parameter {self.where}{prefix}{name}{hint(name, known)}")
+            self.warnings.append(self.unknown[-1])
+
+    def report_unused(self, values: Tree, prefix: str, used: Container[str], reason: str) -> None:
+        """Add the nested namespaces that nothing reads to the settings without effect.
+
+        Args:
+            values: Parameters by name.
+            prefix: Their namespace, for messages.
+            used: Names of the nested namespaces that are read.
+            reason: Why the others are not.
+        """
+        for name, value in values.items():
+            if isinstance(value, dict) and name not in used:
+                self.without_effect.add(f"{self.where}{prefix}{name}", reason)
 
 
 def subtree(parameters: Tree, name: str) -> Tree:

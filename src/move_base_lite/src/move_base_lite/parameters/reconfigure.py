@@ -6,7 +6,7 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 from move_base_lite.config import MoveBaseSettings
 from move_base_lite.costmap import CostmapSettings
-from move_base_lite.parameters.costmaps import INHERITED, layer_plugins, with_plugin_list
+from move_base_lite.parameters.costmaps import INHERITED, layer_plugins, with_layer_tables
 from move_base_lite.parameters.planners import REGISTRIES
 from move_base_lite.parameters.reader import ParameterReader, Tree, subtree
 from planar.config.parameters import DynamicParameter, dynamic_parameters_of
@@ -32,8 +32,8 @@ def reconfigure_servers(parameters: Tree) -> Dict[str, List[Tuple[DynamicParamet
     found = {"": _with_values(parameters, "", [*planner_choices, *dynamic_parameters_of(MoveBaseSettings)])}
     for costmap in COSTMAPS:
         found[costmap] = _with_values(parameters, costmap, dynamic_parameters_of(CostmapSettings))
-        values = with_plugin_list(subtree(parameters, costmap), f"{costmap}/")
-        for layer, kind in layer_plugins(ParameterReader(""), values, costmap).items():
+        values = with_layer_tables(subtree(parameters, costmap), f"{costmap}/")
+        for layer, kind in layer_plugins(ParameterReader(""), values, costmap):
             found[f"{costmap}/{layer}"] = _with_values(parameters, f"{costmap}/{layer}", kind.tunables, kind)
     for key, registry in REGISTRIES.items():
         planner = registry.find(str(parameters.get(key, registry.names[0])), is_package_needed=False)
@@ -56,7 +56,7 @@ def with_changes(parameters: Tree, namespace: str, values: Tree) -> Dict[str, An
         return {**parameters, **values}
     tree = subtree(parameters, name)
     if name in COSTMAPS:
-        tree = with_plugin_list(tree, f"{name}/")
+        tree = with_layer_tables(tree, f"{name}/")
     return {**parameters, name: with_changes(tree, rest, values)}
 
 
@@ -67,7 +67,7 @@ def _with_values(
     tree = parameters
     for name in filter(None, namespace.split("/")):
         tree = subtree(tree, name)
-        tree = with_plugin_list(tree, f"{name}/") if name in COSTMAPS else tree
+        tree = with_layer_tables(tree, f"{name}/") if name in COSTMAPS else tree
     offered = []
     for tunable in map(_message_form, tunables):
         names = (tunable.name, *(kind.old_names(tunable.name) if kind else ()))

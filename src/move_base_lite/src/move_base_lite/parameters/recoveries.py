@@ -4,13 +4,21 @@ from typing import Any, Dict, List, Tuple
 
 from move_base_lite.config import MoveBaseSettings
 from move_base_lite.costmap import CostmapSettings, footprint_from
-from move_base_lite.parameters.costmaps import layer_plugins, with_plugin_list
+from move_base_lite.parameters.costmaps import layer_plugins, with_layer_tables
 from move_base_lite.parameters.reader import ParameterReader, Tree, parameter_names, renamed, subtree
 from move_base_lite.recovery import RECOVERIES, NamedRecovery, RecoveryBehavior
 from move_base_lite.recovery.clear_costmap import CLEAR_COSTMAP
 from move_base_lite.recovery.rotate import ROTATE
 from planar import SettingsError
 from planar.extensions import Plugin
+
+# Types of move_base's recovery behaviours by name, in order.
+DEFAULT_RECOVERIES = {
+    "conservative_reset": CLEAR_COSTMAP.name,
+    "rotate_recovery": ROTATE.name,
+    "aggressive_reset": CLEAR_COSTMAP.name,
+    "rotate_recovery_again": ROTATE.name,
+}
 
 
 def recovery_settings(
@@ -66,43 +74,45 @@ def _settings_of(
 ) -> Any:
     if behavior is ROTATE:
         return _rotate_settings(reader, parameters, name, values)
-    settings = reader.read_plugin(behavior, values, f"{name}/")
-    if behavior is CLEAR_COSTMAP:
-        _check_layers(reader, parameters, name, values.get("layer_names"))
-    return settings
+    if behavior is CLEAR_COSTMAP and "layer_names" in values:
+        values = {**values, "layer_names": _known_layers(reader, parameters, name, values["layer_names"])}
+    return reader.read_plugin(behavior, values, f"{name}/")
 
 
 def _rotate_settings(reader: ParameterReader, parameters: Tree, name: str, values: Tree) -> Any:
     """Read the settings of rotate_recovery, whose namespace is TrajectoryPlannerROS."""
-    reader.report_unknown(set(values) - ROTATE.ignored, f"{name}/", ROTATE.ignored)
+    reader.read_ignored(ROTATE, values, f"{name}/")
     shared = renamed(subtree(parameters, "TrajectoryPlannerROS"), ROTATE.synonyms)
     values = {key: value for key, value in shared.items() if key in parameter_names(ROTATE.settings)}
     return reader.read_plugin(ROTATE, values, "TrajectoryPlannerROS/")
 
 
-def _check_layers(reader: ParameterReader, parameters: Tree, name: str, named: Any) -> None:
-    """Warn about names of layers that do not exist; the obstacles of all layers are cleared anyway."""
-    if named is None:
-        return
+def _known_layers(reader: ParameterReader, parameters: Tree, name: str, named: Any) -> Tuple[str, ...]:
+    """Return the layers to clear, with a warning for unknown ones; without a known one all are cleared."""
     existing = {
         layer
         for costmap in ("global_costmap", "local_costmap")
-        for layer in layer_plugins(
+        for layer, _ in layer_plugins(
             ParameterReader(reader.where),
-            with_plugin_list(subtree(parameters, costmap), f"{reader.where}{costmap}/"),
+            with_layer_tables(subtree(parameters, costmap), f"{reader.where}{costmap}/"),
             costmap,
         )
     }
-    for layer in named if isinstance(named, list) else [named]:
-        if not isinstance(layer, str) or layer not in existing:
+    listed = named if isinstance(named, list) else [named]
+    known = tuple(layer for layer in listed if isinstance(layer, str) and layer in existing)
+    consequence = "" if known else "; the obstacles of all layers are cleared"
+    for layer in listed:
+        if layer not in known:
             reader.warnings.append(
                 f"{reader.where}{name}/layer_names: no costmap has a layer {layer} "
-                f"(there are {', '.join(sorted(existing))}); the obstacles of all layers are cleared"
+                f"(there are {', '.join(sorted(existing))}){consequence}"
             )
+    return known
 
 
 def _default_recoveries(rotation_allowed: bool) -> List[Dict[str, Any]]:
-    clear, rotate = CLEAR_COSTMAP.name, ROTATE.name
-    order = [("conservative_reset", clear), ("rotate_recovery", rotate), ("aggressive_reset", clear)]
-    order.append(("rotate_recovery_again", rotate))
-    return [{"name": name, "type": kind} for name, kind in order if rotation_allowed or kind != rotate]
+    return [
+        {"name": name, "type": kind}
+        for name, kind in DEFAULT_RECOVERIES.items()
+        if rotation_allowed or kind != ROTATE.name
+    ]

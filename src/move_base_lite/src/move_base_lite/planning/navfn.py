@@ -17,8 +17,9 @@ from move_base_lite.planning.global_planner import (
 from move_base_lite.planning.nearest import Cell, passable_ends
 from move_base_lite.planning.shortcuts import shorten
 from move_base_lite.planning.wavefront import propagate_wavefront, trace_path, traversal_costs
-from planar.config.parameters import DynamicParameter, Interval, at_least, parameter
+from planar.config.parameters import Interval, at_least, parameter
 from planar.config.settings import check
+from planar.config.without_effect import IneffectiveParameter
 from planar.extensions import Plugin
 
 STEP_CELLS = 0.5
@@ -159,29 +160,30 @@ def _with_astar(values: Dict[str, Any]) -> Dict[str, Any]:
     }
 
 
-# Details of global_planner; accepted in both namespaces.
-IGNORED = frozenset(
-    {
-        "planner_window_x", "planner_window_y", "outline_map", "old_navfn_behavior", "use_quadratic",
-        "orientation_window_size",
-    }
-)  # fmt: skip
-
+UNUSED = "the official planner does not use it either"
+WINDOW = (
+    IneffectiveParameter("planner_window_x", 0.0, UNUSED, is_dynamic=False),
+    IneffectiveParameter("planner_window_y", 0.0, UNUSED, is_dynamic=False),
+)
+GRADIENT = (
+    IneffectiveParameter("old_navfn_behavior", False, "paths have one form", is_dynamic=False),
+    IneffectiveParameter("use_quadratic", True, "potentials are quadratic", is_dynamic=False),
+)
+BORDER = IneffectiveParameter("outline_map", True, "the border of the map is always impassable")
+WINDOW_SIZE = IneffectiveParameter(
+    "orientation_window_size", 1, "headings are those of the path's segments", 1, 255
+)
 NAVFN: Plugin[GlobalPlanner] = Plugin(
     "navfn/NavfnROS",
     NavfnSettings,
     Navfn,
     translate=_with_astar,
-    ignored=IGNORED | {"publish_potential"},
+    without_effect=WINDOW,
 )
 GLOBAL_PLANNER: Plugin[GlobalPlanner] = Plugin(
     "global_planner/GlobalPlanner",
     GlobalPlannerSettings,
     Navfn,
     translate=_with_astar,
-    without_effect=(
-        DynamicParameter("orientation_window_size", 1, "(no effect)", 1, 255),
-        DynamicParameter("outline_map", True, "(no effect: the map's border is always impassable)"),
-    ),
-    ignored=IGNORED,
+    without_effect=(WINDOW_SIZE, BORDER, *WINDOW, *GRADIENT),
 )

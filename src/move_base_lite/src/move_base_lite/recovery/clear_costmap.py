@@ -1,12 +1,13 @@
 """Clear costmap recovery (clear_costmap_recovery)."""
 
 from dataclasses import dataclass
-from typing import Optional
+from typing import Optional, Tuple
 
 from move_base_lite.recovery.behavior import RecoveryBehavior, RecoveryContext
 from planar import Twist2
 from planar.config.parameters import at_least, check_parameters, parameter
 from planar.config.settings import check
+from planar.config.without_effect import IneffectiveParameter
 from planar.extensions import Plugin
 
 LOCAL, GLOBAL, BOTH = "local", "global", "both"
@@ -24,6 +25,7 @@ class ClearCostmapSettings:
     )
     invert_area_to_clear: bool = parameter(False, "clear inside the square instead of outside")
     affected_maps: str = parameter(BOTH, "costmaps to clear: local, global or both")
+    layer_names: Tuple[str, ...] = parameter((), "layers to clear; empty: all")
 
     def __post_init__(self):
         check_parameters(self)
@@ -40,21 +42,24 @@ class ClearCostmapRecovery(RecoveryBehavior):
     def step(self, context: RecoveryContext) -> Optional[Twist2]:
         """Clear the costmaps, in one period (see RecoveryBehavior.step)."""
         side, affected = self._settings.reset_distance, self._settings.affected_maps
+        names = self._settings.layer_names or None
         for name, costmap, base in (
             (GLOBAL, context.global_costmap, context.base_in_map),
             (LOCAL, context.local_costmap, context.base_in_local),
         ):
             if affected in (name, BOTH):
                 clear = costmap.clear_around if self._settings.invert_area_to_clear else costmap.clear_outside
-                clear(base, side)
+                clear(base, side, names)
         return None
 
 
-# The ignored parameters have no effect here: all obstacle layers are cleared, and costmaps update every
-# period.
 CLEAR_COSTMAP: Plugin[RecoveryBehavior] = Plugin(
     "clear_costmap_recovery/ClearCostmapRecovery",
     ClearCostmapSettings,
     ClearCostmapRecovery,
-    ignored=frozenset({"layer_names", "force_updating"}),
+    without_effect=(
+        IneffectiveParameter(
+            "force_updating", False, "costmaps are updated at once", fulfilled=(True,), is_dynamic=False
+        ),
+    ),
 )

@@ -6,6 +6,7 @@ from typing import Optional
 from move_base_lite.recovery.behavior import RecoveryBehavior, RecoveryContext, SpeedLimit
 from planar import Twist2
 from planar.config.parameters import POSITIVE, at_least, check_parameters, parameter
+from planar.config.without_effect import IneffectiveParameter
 from planar.extensions import Plugin
 
 
@@ -38,9 +39,14 @@ class MoveSlowRecovery(RecoveryBehavior):
         return None
 
 
+LIMITED = "the limit applies to any local planner"
 MOVE_SLOW: Plugin[RecoveryBehavior] = Plugin(
     "move_slow_and_clear/MoveSlowAndClear",
     MoveSlowSettings,
     MoveSlowRecovery,
-    ignored=frozenset({"max_trans_param_name", "max_rot_param_name", "planner_namespace"}),
+    without_effect=(
+        IneffectiveParameter("max_trans_param_name", "max_trans_vel", LIMITED, is_dynamic=False),
+        IneffectiveParameter("max_rot_param_name", "max_rot_vel", LIMITED, is_dynamic=False),
+        IneffectiveParameter("planner_namespace", "DWAPlannerROS", LIMITED, is_dynamic=False),
+    ),
 )

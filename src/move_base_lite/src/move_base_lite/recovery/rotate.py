@@ -7,6 +7,7 @@ from typing import Optional
 from move_base_lite.recovery.behavior import RecoveryBehavior, RecoveryContext
 from planar import Twist2, wrap
 from planar.config.parameters import POSITIVE, check_parameters, parameter
+from planar.config.without_effect import IneffectiveParameter
 from planar.extensions import Plugin
 
 LOOKAHEAD_ANGLE = 0.4
@@ -77,5 +78,10 @@ ROTATE: Plugin[RecoveryBehavior] = Plugin(
         "max_rotational_vel": "max_vel_theta",
         "min_in_place_rotational_vel": "min_in_place_vel_theta",
     },
-    ignored=frozenset({"sim_granularity", "frequency"}),
+    without_effect=(
+        IneffectiveParameter(
+            "sim_granularity", 0.017, "collisions are checked each 0.1 rad", is_dynamic=False
+        ),
+        IneffectiveParameter("frequency", 20.0, "controller_frequency applies", is_dynamic=False),
+    ),
 )

@@ -2,7 +2,7 @@
 
 import threading
 from functools import partial
-from typing import Callable, Dict, Optional
+from typing import Any, Callable, Dict, Optional
 
 import rospy
 
@@ -13,25 +13,27 @@ from move_base_lite.navigator import Navigator
 from move_base_lite.navigator.decision import Decision, RecoveryTrigger, Status, with_reason
 from move_base_lite.navigator.inputs import RobotState
 from move_base_lite.navigator.zones import Zones, load_zones
-from move_base_lite.parameters import settings_from_parameters
+from move_base_lite.parameters import read_parameters
+from move_base_lite.parameters.costmaps import SEARCHED
 from move_base_lite.ros.goals.messages import InvalidGoal
 from move_base_lite.ros.goals.plan_services import PlanServices
 from move_base_lite.ros.goals.server import GoalServer
 from move_base_lite.ros.reconfigure import ReconfigureServers
 from move_base_lite.ros.sensing.diagnostics import SensorDiagnostics
 from move_base_lite.ros.sensing.sensor_bridge import SensorBridge
+from move_base_lite.ros.sensing.static_maps import StaticMapTopics
 from move_base_lite.ros.sensing.tf_poses import TfPoses
 from move_base_lite.ros.topics.costmaps import CostmapTopics
 from move_base_lite.ros.topics.decisions import DecisionTopics
 from move_base_lite.ros.topics.potential import PotentialTopic
 from move_base_lite.ros.topics.zones import ZoneTopics
 from move_base_lite.warmup import warm_up
-from planar import OccupancyGrid, Pose2, SettingsError, Twist2
-from planar_ros.lockstep import LockstepClient, has_synchronized_publisher
-from planar_ros.messages.conversion import OccupancyGridArrays, frame_name, grid_from_msg
+from planar import Pose2, Twist2
+from planar_ros.lockstep import LockstepClient
+from planar_ros.messages.conversion import frame_name
 from planar_ros.messages.transforms import Transforms
-from planar_ros.messages.validation import subscribe
-from planar_ros.node.parameters import parameters_below
+from planar_ros.node.memory import release_compiler
+from planar_ros.node.parameters import is_strict, parameters_below, report_without_effect
 from planar_ros.node.readiness import ReadinessMonitor
 from planar_ros.node.runner import run
 
@@ -47,17 +49,17 @@ class MoveBaseNode:
 
     def __init__(self):
         self._step = LockstepClient.of_node()
-        parameters = parameters_below("~")
+        parameters = {**_searched_parameters(), **parameters_below("~")}
         self._settings = _checked_settings(parameters)
         zones_file = parameters.get("zones_file", "")
         self._zones = load_zones(zones_file) if zones_file else Zones()
         warm_up(self._settings)
+        release_compiler()
         costmaps = self._settings.global_costmap, self._settings.local_costmap
         self._map_frame, odom_frame = (frame_name(costmap.global_frame) for costmap in costmaps)
         self._global_planner = _short_name(parameters, "base_global_planner", "navfn/NavfnROS")
         local_planner = _short_name(parameters, "base_local_planner", "")
         self._lock = threading.RLock()
-        self._new_map: Optional[OccupancyGrid] = None
         self._state: Optional[RobotState] = None
         self._goal = Pose2()
         self._is_up = self._is_stopped = False
@@ -77,33 +79,23 @@ class MoveBaseNode:
         self._tree = ReconfigureServers(parameters, self._change)
         self._await_inputs()
         self._step.every(self._period, self._tick, self._on_time_jump, reports=True)
-        self._step.join(self._has_map)
+        self._step.join(self._maps.are_in_step)
 
     def _await_inputs(self):
         transforms = f"the transforms {' -> '.join(self._move_base.inputs.frames)}"
         conditions: Dict[str, Callable[[], bool]] = {transforms: lambda: self._state is not None}
         for topic in self._sensors.topics:
             conditions[f"a message on {topic}"] = partial(self._sensors.has_message, topic)
-        static = self._settings.global_costmap.static
-        if static.enabled:
-            conditions[f"a map on {rospy.resolve_name(static.map_topic)}"] = self._has_any_map
-            self._maps = subscribe(static.map_topic, OccupancyGridArrays, self._on_map, queue_size=1)
+        sources, frames = self._move_base.map_sources, [*self._move_base.inputs.frames[:2]]
+        self._maps = StaticMapTopics(sources, frames, self._transforms)
+        for source in sources:
+            conditions[f"a map on {rospy.resolve_name(source.topic)}"] = partial(self._maps.has_map, source)
         ReadinessMonitor(conditions)
-
-    def _on_map(self, message):
-        self._new_map = grid_from_msg(message)
 
     def _change(self, settings: NavigatorSettings):
         with self._lock:
             self._settings = settings
             self._move_base.update_settings(settings)
-
-    def _has_any_map(self) -> bool:
-        return self._new_map is not None or self._move_base.is_ready
-
-    def _has_map(self) -> bool:
-        """Whether there is a map, or none is expected from a synchronised node."""
-        return self._has_any_map() or has_synchronized_publisher(self._maps)
 
     def _period(self) -> float:
         return 1.0 / self._settings.move_base.controller_frequency
@@ -119,9 +111,8 @@ class MoveBaseNode:
 
     def _tick(self, now: rospy.Time):
         with self._lock:
-            grid, self._new_map = self._new_map, None
-            if grid is not None:
-                self._move_base.set_map(grid)
+            for source, static_map in self._maps.take_new().items():
+                self._move_base.set_layer_map(source, static_map)
             if self._is_stopped or not self._move_base.is_ready:
                 return
             self._accept_goal(now)
@@ -210,13 +201,18 @@ class MoveBaseNode:
 
 
 def _checked_settings(parameters) -> NavigatorSettings:
-    is_strict = parameters.get("strict_params", False)
-    settings, warnings = settings_from_parameters(parameters, rospy.get_name() + "/", not is_strict)
-    for warning in warnings:
-        if warning.startswith("unknown parameter") and is_strict:
-            raise SettingsError(warning)
-        rospy.logwarn(warning)
-    return settings
+    found = read_parameters(parameters, rospy.get_name() + "/", not is_strict())
+    for warning in found.warnings:
+        if warning not in found.unknown:
+            rospy.logwarn(warning)
+    report_without_effect(found.without_effect, found.unknown)
+    return found.settings
+
+
+def _searched_parameters() -> Dict[str, Any]:
+    """Parameters of the robot that stand above the node's namespace, as costmap_2d searches them."""
+    found = {name: rospy.search_param(name) for name in SEARCHED}
+    return {name: rospy.get_param(place) for name, place in found.items() if place is not None}
 
 
 def _short_name(parameters, key: str, default: str) -> str:

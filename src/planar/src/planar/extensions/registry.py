@@ -1,10 +1,11 @@
 """The implementations of an extension point that a package ships, by their official names."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any, Callable, Dict, FrozenSet, Generic, Mapping, Optional, Tuple, TypeVar
 
 from planar.config.parameters import DynamicParameter, dynamic_parameters_of
+from planar.config.without_effect import IneffectiveParameter
 from planar.extensions.point import ExtensionPoint
 
 T = TypeVar("T")
@@ -25,8 +26,8 @@ class Plugin(Generic[T]):
         deprecated: Old names of parameters with the present ones; accepted with a warning.
         synonyms: Other names of parameters with the present ones; accepted without a warning.
         translate: Converts old forms of parameter values to the present ones.
-        without_effect: Parameters of the official dynamic_reconfigure that have no effect here.
-        ignored: Names of parameters that are accepted and have no effect.
+        without_effect: Official parameters that are accepted and have no effect here.
+        elsewhere: Names of parameters that are read by other means.
     """
 
     name: str
@@ -35,8 +36,8 @@ class Plugin(Generic[T]):
     deprecated: Mapping[str, str] = field(default_factory=dict)
     synonyms: Mapping[str, str] = field(default_factory=dict)
     translate: Callable[[Dict[str, Any]], Dict[str, Any]] = _unchanged
-    without_effect: Tuple[DynamicParameter, ...] = ()
-    ignored: FrozenSet[str] = frozenset()
+    without_effect: Tuple[IneffectiveParameter, ...] = ()
+    elsewhere: FrozenSet[str] = frozenset()
 
     @property
     def short_name(self) -> str:
@@ -46,12 +47,12 @@ class Plugin(Generic[T]):
     @property
     def tunables(self) -> Tuple[DynamicParameter, ...]:
         """Parameters that dynamic_reconfigure offers."""
-        return (*dynamic_parameters_of(self.settings), *self.without_effect)
-
-    @property
-    def meaningless(self) -> FrozenSet[str]:
-        """Names of parameters that are accepted and have no effect."""
-        return self.ignored | {tunable.name for tunable in self.without_effect}
+        ineffective = (
+            replace(each, meaning=f"(no effect: {each.meaning})")
+            for each in self.without_effect
+            if each.is_dynamic
+        )
+        return (*dynamic_parameters_of(self.settings), *ineffective)
 
     def old_names(self, name: str) -> Tuple[str, ...]:
         """Return the deprecated names and synonyms of a parameter.
@@ -80,6 +81,11 @@ class Registry(Generic[T]):
     def names(self) -> Tuple[str, ...]:
         """Official names of the plugins of this package."""
         return tuple(member.name for member in self.members)
+
+    @property
+    def namespaces(self) -> Tuple[str, ...]:
+        """Namespaces of the parameters of all plugins that are known so far."""
+        return tuple(each.short_name for each in self._known)
 
     def find(self, name: str, is_package_needed: bool = True) -> Optional[Plugin[T]]:
         """Find a plugin by its name; a dotted name is that of a user-defined class.

@@ -13,9 +13,12 @@ from planar import SettingsError
 from planar.config.hints import hint
 from planar.config.parameters import DynamicParameter, dynamic_parameters_of, parameters_of
 from planar.config.settings import settings_from
+from planar.config.without_effect import SettingsWithoutEffect
 
 # Parameter that dynamic_reconfigure adds to a node's parameters.
 RESTORE = "restore_defaults"
+# Parameter that makes an error of what has no effect.
+STRICT = "strict_params"
 # dynamic_reconfigure's names of types, and its largest integer.
 KINDS = {bool: "bool", int: "int", float: "double", str: "str"}
 LARGEST_INT = 2**31 - 1
@@ -28,11 +31,12 @@ def read_settings(
     namespace: str = "~",
     ignore: Iterable[str] = (),
     defaults: Mapping[str, Any] = {},
+    without_effect: Mapping[str, str] = {},
 ) -> T:
     """Read a settings dataclass from the parameter server (see planar.config.settings).
 
     Unknown names cause a warning with the most similar known name, and values of a wrong type count as not
-    set, as in roscpp; with ``~strict_params`` both are errors. Nested namespaces belong to other components
+    set, as in roscpp; if the node is strict both are errors. Nested namespaces belong to other components
     and are ignored.
 
     Args:
@@ -41,6 +45,7 @@ def read_settings(
         namespace: Namespace of the parameters.
         ignore: Further known names.
         defaults: Values for parameters that are not set, instead of the defaults of ``kind``.
+        without_effect: Names of parameters that are accepted without effect, with the reason.
 
     Returns:
         The settings.
@@ -51,11 +56,41 @@ def read_settings(
     where = rospy.resolve_name(namespace).rstrip("/") + "/"
     values = {name: value for name, value in parameters_below(where).items() if not isinstance(value, dict)}
     settings, unknown = settings_from(kind, {**defaults, **values}, names, where, _report_wrong_type)
-    known = {*names, *kind.__dataclass_fields__, *ignore, "strict_params", RESTORE}  # type: ignore[attr-defined]
-    for name in unknown:
-        if name not in known:
-            _report(f"unknown parameter {where}{name}{hint(name, known)}")
+    known = {*names, *kind.__dataclass_fields__, *ignore, *without_effect, STRICT, RESTORE}  # type: ignore[attr-defined]
+    found = SettingsWithoutEffect()
+    for name in without_effect.keys() & values.keys():
+        found.add(where + name, without_effect[name])
+    unknown = [name for name in unknown if name not in known]
+    report_without_effect(found, [f"unknown parameter {where}{name}{hint(name, known)}" for name in unknown])
     return settings
+
+
+def is_strict() -> bool:
+    """Whether ``strict_params`` is set for this node, in its namespace or one above."""
+    place = rospy.search_param(STRICT)
+    return bool(place is not None and rospy.get_param(place))
+
+
+def report_without_effect(found: SettingsWithoutEffect, unknown: Sequence[str]) -> None:
+    """Log the parameters without effect and a summary; a strict node refuses them.
+
+    Args:
+        found: Parameters that are known and have no effect.
+        unknown: One warning for each unknown parameter.
+
+    Raises:
+        SettingsError: The node is strict and there are such parameters.
+    """
+    if is_strict():
+        if unknown:
+            raise SettingsError(unknown[0])
+        found.refuse()
+    for text in found:
+        rospy.loginfo("%s", text)
+    for warning in unknown:
+        rospy.logwarn("%s", warning)
+    if len(found) or unknown:
+        rospy.logwarn("%s", found.summary("the lines above", len(unknown)))
 
 
 def parameters_below(namespace: str) -> Dict[str, Any]:
@@ -151,7 +186,7 @@ def _report_wrong_type(complaint: str) -> None:
 
 
 def _report(text: str) -> None:
-    if rospy.get_param("~strict_params", False):
+    if is_strict():
         raise SettingsError(text)
     rospy.logwarn("%s", text)
 

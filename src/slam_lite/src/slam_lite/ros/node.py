@@ -24,6 +24,8 @@ from slam_lite.ros.thread_safe_mapper import ThreadSafeMapper
 from slam_lite.warming import warm_up
 
 SCAN_QUEUE_SIZE = 5
+# Why parameters of gmapping's particle filter have no effect.
+NO_PARTICLES = "a pose graph has no particles; keyframe_distance and keyframe_angle choose its keyframes"
 
 
 class SlamNode:
@@ -32,9 +34,11 @@ class SlamNode:
     def __init__(self):
         self._step = LockstepClient.of_node()
         settings = self._settings = read_settings(
-            NodeSettings, official_names(NodeSettings), ignore=[*WITHOUT_EFFECT, "seed"]
+            NodeSettings,
+            official_names(NodeSettings),
+            ignore=["seed"],
+            without_effect=dict.fromkeys(WITHOUT_EFFECT, NO_PARTICLES),
         )
-        _log_ignored_parameters()
         self._mapper = ThreadSafeMapper(settings)
         self._odometry_check = OdometryCheck()
         self._is_paused = False
@@ -122,16 +126,6 @@ class SlamNode:
 
     def _has_odometry(self):
         return self._transforms.latest_stamp(self._settings.odom_frame, self._settings.base_frame) is not None
-
-
-def _log_ignored_parameters():
-    given = [name for name in WITHOUT_EFFECT if rospy.has_param("~" + name)]
-    if given:
-        rospy.loginfo(
-            "ignoring the particle filter's parameters %s: slam_lite optimizes a pose graph "
-            "(keyframe_distance and keyframe_angle choose its keyframes)",
-            ", ".join(given),
-        )
 
 
 def main():

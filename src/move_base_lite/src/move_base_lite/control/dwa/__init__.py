@@ -2,9 +2,7 @@
 
 from move_base_lite.control.dwa.planner import DwaPlanner
 from move_base_lite.control.dwa.settings import (
-    DWA_IGNORED,
     DWA_WITHOUT_EFFECT,
-    TRAJECTORY_IGNORED,
     TRAJECTORY_WITHOUT_EFFECT,
     DwaSettings,
     TrajectorySettings,
@@ -27,7 +25,7 @@ DWA: Plugin[LocalPlanner] = Plugin(
         "vtheta_samples": "vth_samples",
     },
     without_effect=DWA_WITHOUT_EFFECT,
-    ignored=DWA_IGNORED,
+    elsewhere=frozenset({"odom_topic"}),
 )
 
 TRAJECTORY: Plugin[LocalPlanner] = Plugin(
@@ -42,7 +40,6 @@ TRAJECTORY: Plugin[LocalPlanner] = Plugin(
         "gdist_scale": "goal_distance_bias",
     },
     without_effect=TRAJECTORY_WITHOUT_EFFECT,
-    ignored=TRAJECTORY_IGNORED,
 )
 
 __all__ = ["DWA", "TRAJECTORY", "DwaPlanner", "DwaSettings", "TrajectorySettings"]

@@ -1,13 +1,19 @@
 """Parameters of DWAPlannerROS and TrajectoryPlannerROS."""
 
-from dataclasses import dataclass, field
+import math
+from dataclasses import dataclass, field, replace
 
 from move_base_lite.control.settings import OFFERED_FROM_ZERO, OFFERED_TO_20, ControllerSettings
-from planar.config.parameters import POSITIVE, DynamicParameter, parameter
+from planar.config.parameters import POSITIVE, parameter
+from planar.config.without_effect import IneffectiveParameter
 
-SIDEWAYS = "(no effect on a differential drive)"
-EXACT = "(no effect: the footprint is exact)"
-STEADY = "(no effect: oscillations are not tracked)"
+# Reasons for parameters that are accepted without effect.
+SIDEWAYS = "the drive is differential"
+EXACT = "the footprint is exact"
+STEADY = "oscillations are not tracked"
+ESCAPE = "trapped robots escape by costs"
+PRUNED = "the plan behind the robot is always pruned"
+UNREAD = "the official planner does not read it"
 
 
 @dataclass(frozen=True)
@@ -56,27 +62,26 @@ class DwaSettings(ControllerSettings):
     )
 
 
-# Offered by dynamic_reconfigure without effect: for holonomic robots, or details of the official code.
 DWA_WITHOUT_EFFECT = (
-    DynamicParameter("max_vel_y", 0.1, f"[m/s] {SIDEWAYS}"),
-    DynamicParameter("min_vel_y", -0.1, f"[m/s] {SIDEWAYS}"),
-    DynamicParameter("acc_lim_y", 2.5, f"[m/s^2] {SIDEWAYS}", 0.0, 20.0),
-    DynamicParameter("acc_lim_trans", 0.1, f"[m/s^2] {SIDEWAYS}", 0.0, 20.0),
-    DynamicParameter("vy_samples", 10, SIDEWAYS, 1),
-    DynamicParameter("prune_plan", False, "(no effect: the plan behind the robot is always pruned)"),
-    DynamicParameter("stop_time_buffer", 0.2, "[s] (no effect)", 0.0),
-    DynamicParameter("oscillation_reset_dist", 0.05, f"[m] {STEADY}", 0.0),
-    DynamicParameter("oscillation_reset_angle", 0.2, f"[rad] {STEADY}", 0.0),
-    DynamicParameter("scaling_speed", 0.25, f"[m/s] {EXACT}", 0.0),
-    DynamicParameter("max_scaling_factor", 0.2, EXACT, 0.0),
+    IneffectiveParameter("max_vel_y", 0.1, SIDEWAYS, fulfilled=(0,)),
+    IneffectiveParameter("min_vel_y", -0.1, SIDEWAYS, fulfilled=(0,)),
+    IneffectiveParameter("acc_lim_y", 2.5, SIDEWAYS, 0.0, 20.0, fulfilled=(0,)),
+    IneffectiveParameter("acc_lim_trans", 0.1, "acc_lim_x limits the acceleration", 0.0, 20.0),
+    IneffectiveParameter("vy_samples", 10, SIDEWAYS, 1, fulfilled=(0, 1)),
+    IneffectiveParameter("prune_plan", False, PRUNED, fulfilled=(True,)),
+    IneffectiveParameter("stop_time_buffer", 0.2, "the official planner does not use it either", 0.0),
+    IneffectiveParameter("oscillation_reset_dist", 0.05, STEADY, 0.0),
+    IneffectiveParameter("oscillation_reset_angle", 0.2, STEADY, 0.0),
+    IneffectiveParameter("scaling_speed", 0.25, EXACT, 0.0),
+    IneffectiveParameter("max_scaling_factor", 0.2, EXACT, 0.0),
+    IneffectiveParameter(
+        "global_frame_id", "odom", "clouds are in the frame of the local costmap", is_dynamic=False
+    ),
+    IneffectiveParameter("sum_scores", False, "scores are not summed along a trajectory", is_dynamic=False),
+    IneffectiveParameter("controller_frequency", 20.0, "that of move_base applies", is_dynamic=False),
+    IneffectiveParameter("penalize_negative_x", True, UNREAD, is_dynamic=False),
+    IneffectiveParameter("holonomic_robot", False, SIDEWAYS, is_dynamic=False),
 )
-# Accepted without effect: unused in the official code, or meaningless here.
-DWA_IGNORED = frozenset(
-    {
-        "global_frame_id", "sum_scores", "odom_topic", "holonomic_robot", "restore_defaults",
-        "controller_frequency", "penalize_negative_x",
-    }
-)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -124,17 +129,29 @@ class TrajectorySettings(DwaSettings):
         super().__post_init__()
 
 
-TRAJECTORY_WITHOUT_EFFECT = (
-    DynamicParameter("acc_lim_y", 2.5, f"[m/s^2] {SIDEWAYS}", 0.0, 20.0),
-    DynamicParameter("stop_time_buffer", 0.2, "[s] (no effect)", 0.0),
-    DynamicParameter("oscillation_reset_dist", 0.05, f"[m] {STEADY}", 0.0),
+_OFFERED = ("acc_lim_y", "stop_time_buffer", "oscillation_reset_dist")
+_OWN = (
+    IneffectiveParameter("holonomic_robot", True, SIDEWAYS, fulfilled=(False,), is_dynamic=False),
+    IneffectiveParameter("prune_plan", True, PRUNED, is_dynamic=False),
+    IneffectiveParameter("odom_topic", "odom", UNREAD, is_dynamic=False),
+    IneffectiveParameter("escape_vel", -0.1, ESCAPE, is_dynamic=False),
+    IneffectiveParameter("backup_vel", -0.1, ESCAPE, is_dynamic=False),
+    IneffectiveParameter("escape_reset_dist", 0.1, ESCAPE, is_dynamic=False),
+    IneffectiveParameter("escape_reset_theta", math.pi / 4, ESCAPE, is_dynamic=False),
+    IneffectiveParameter("y_vels", [-0.3, -0.1, 0.1, 0.3], SIDEWAYS, fulfilled=([],), is_dynamic=False),
+    IneffectiveParameter("heading_scoring", False, "DWA's critics score headings", is_dynamic=False),
+    IneffectiveParameter("heading_scoring_timestep", 0.8, "DWA's critics score headings", is_dynamic=False),
+    IneffectiveParameter("meter_scoring", False, "distances are scored as by DWA", is_dynamic=False),
+    IneffectiveParameter("simple_attractor", False, "DWA's critics score trajectories", is_dynamic=False),
+    IneffectiveParameter("world_model", "costmap", "collisions are checked in the costmap", is_dynamic=False),
+    IneffectiveParameter("min_vel_theta", -1.0, "the turn rate is at least -max_vel_theta", is_dynamic=False),
+    IneffectiveParameter("max_vel_trans", 0.55, "max_vel_x is the maximum speed", is_dynamic=False),
 )
-TRAJECTORY_IGNORED = (
-    DWA_IGNORED
-    | {tunable.name for tunable in DWA_WITHOUT_EFFECT}
-    | {
-        "escape_vel", "y_vels", "heading_scoring", "heading_scoring_timestep", "meter_scoring",
-        "escape_reset_dist", "escape_reset_theta", "simple_attractor", "world_model", "backup_vel",
-        "min_vel_theta", "max_vel_trans",
-    }
-)  # fmt: skip
+TRAJECTORY_WITHOUT_EFFECT = (
+    *_OWN,
+    *(
+        replace(each, is_dynamic=each.name in _OFFERED)
+        for each in DWA_WITHOUT_EFFECT
+        if each.name not in {own.name for own in _OWN}
+    ),
+)

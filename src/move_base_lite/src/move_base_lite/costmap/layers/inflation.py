@@ -33,14 +33,12 @@ def cost_at(distance: float, inscribed_radius: float, settings: InflationSetting
     """Compute the cost of a cell from its distance to the nearest obstacle (costmap_2d: computeCost).
 
     Args:
-        distance: Distance to the obstacle [m].
+        distance: Distance to the obstacle [m], within the reach of inflation.
         inscribed_radius: Inscribed radius of the footprint [m].
-        settings: ``inflation_radius`` and ``cost_scaling_factor``.
+        settings: ``cost_scaling_factor``.
     """
     if distance <= 0.0:
         return LETHAL
-    if distance > settings.inflation_radius:
-        return FREE
     if distance <= inscribed_radius:
         return INSCRIBED
     return int((INSCRIBED - 1) * math.exp(-settings.cost_scaling_factor * (distance - inscribed_radius)))

@@ -2,19 +2,21 @@
 
 import math
 from dataclasses import dataclass
-from typing import Dict, List, Tuple
+from typing import List, Tuple
 
 import numba
 import numpy as np
 
+from move_base_lite.costmap.combination import combine
 from move_base_lite.costmap.costs import FREE, LETHAL, UNKNOWN
 from move_base_lite.costmap.layer import CostmapPlacement, Layer, LayerContext, LayerSettings
 from move_base_lite.costmap.observation import Observation
 from move_base_lite.costmap.polygon import Polygon
 from move_base_lite.costmap.window import NO_CELLS, CellBounds, CostmapWindow, union
 from planar import Pose2
-from planar.config.parameters import POSITIVE, DynamicParameter, at_least, check_parameters, parameter
+from planar.config.parameters import POSITIVE, at_least, check_parameters, parameter
 from planar.config.settings import check
+from planar.config.without_effect import IneffectiveParameter
 from planar.extensions import Plugin
 
 DATA_TYPES = ("LaserScan", "PointCloud", "PointCloud2")
@@ -73,7 +75,7 @@ class ObstacleSettings(LayerSettings):
     combination_method: int = parameter(
         MAXIMUM,
         "with the layers below: 0 overwrites, 1 keeps the higher cost, 99 ignores this layer",
-        dynamic=(0, 99),
+        dynamic=True,
     )
     sources: Tuple[SourceSettings, ...] = ()
 
@@ -91,16 +93,46 @@ class _LocatedObservation:
     sensor_in_frame: Pose2
 
 
+class _ObservationBuffer:
+    """Observations of one source that count at an update (costmap_2d: ObservationBuffer).
+
+    Attributes:
+        source: Parameters of the source.
+        kept: The newest observation and, for ``observation_persistence``, older ones.
+    """
+
+    def __init__(self, source: SourceSettings):
+        self.source = source
+        self.kept: List[_LocatedObservation] = []
+        self._new: List[_LocatedObservation] = []
+
+    def add(self, located: _LocatedObservation) -> None:
+        """Store an observation until the next update; it replaces older ones unless they persist."""
+        self._new = [*self._new, located] if self.source.observation_persistence > 0.0 else [located]
+
+    def take_new(self) -> bool:
+        """Keep the observations since the last update and drop those that are too old.
+
+        Returns:
+            Whether there was a new one.
+        """
+        new, self._new = self._new, []
+        if not new:
+            return False
+        oldest = new[-1].observation.stamp - self.source.observation_persistence
+        persistent = [*self.kept, *new[:-1]] if self.source.observation_persistence > 0.0 else []
+        self.kept = [each for each in persistent if each.observation.stamp >= oldest] + new[-1:]
+        return True
+
+
 class ObstacleLayer(Layer):
     """Occupied and free cells observed by sensors, aligned with the costmap's window."""
 
     def __init__(self, settings: ObstacleSettings, context: LayerContext):
         self._settings, self._footprint = settings, context.footprint
         self._default = UNKNOWN if settings.track_unknown_space else FREE
-        self._persistent: Dict[str, List[_LocatedObservation]] = {
-            source.topic: [] for source in settings.sources
-        }
-        self._pending: Dict[str, _LocatedObservation] = {}
+        self._buffers = [_ObservationBuffer(source) for source in settings.sources]
+        self._window = context.window
         self._costs = np.full((context.window.rows, context.window.cols), self._default, dtype=np.uint8)
 
     def add_observation(self, observation: Observation, base_in_frame: Pose2) -> None:
@@ -110,89 +142,96 @@ class ObstacleLayer(Layer):
             observation: Beams of one sensor.
             base_in_frame: Robot pose in the costmap's frame when they were measured.
         """
-        if observation.topic in self._persistent:
-            self._pending[observation.topic] = _LocatedObservation(
-                observation, base_in_frame @ observation.sensor_in_base
-            )
+        for buffer in self._buffers:
+            if buffer.source.topic == observation.topic:
+                sensor_in_frame = base_in_frame @ observation.sensor_in_base
+                buffer.add(_LocatedObservation(observation, sensor_in_frame))
 
     def update(self, placement: CostmapPlacement) -> CellBounds:
         """Clear along the beams of all sensors, mark their ends, clear the footprint (see Layer.update)."""
-        window = placement.window
-        self._roll(placement.rows, placement.cols)
-        changed = self._integrate_pending(window)
+        window, changed = placement.window, NO_CELLS
+        has_rolled, received = self._roll(window), [buffer.take_new() for buffer in self._buffers]
+        if has_rolled or True in received:
+            changed = self._integrate_kept(window)
         if self._settings.footprint_clearing_enabled:
             outline_xy = placement.base_in_frame.transform_points(self._footprint.corners_xy)
             changed = union(changed, Polygon(outline_xy).fill(self._costs, window, FREE))
         return changed
 
-    def _integrate_pending(self, window: CostmapWindow) -> CellBounds:
-        changed = NO_CELLS
-        received = [
-            (source, self._pending[source.topic])
-            for source in self._settings.sources
-            if source.topic in self._pending
-        ]
-        for source, new in received:
-            self._integrate(window, source, new, 0.0, source.raytrace_range * source.clearing)
-            reach = max(source.obstacle_range, source.raytrace_range) + window.resolution
-            observed = window.bounds_around(new.sensor_in_frame.x, new.sensor_in_frame.y, reach)
-            changed = union(changed, observed)
-        for source, new in received:
-            for located in self._marking_observations(source, new):
-                self._integrate(window, source, located, source.obstacle_range * source.marking, 0.0)
-        self._pending.clear()
-        return changed
+    def _integrate_kept(self, window: CostmapWindow) -> CellBounds:
+        """Clear along the beams of all observations, then mark their ends.
 
-    def _marking_observations(
-        self, source: SourceSettings, new: _LocatedObservation
-    ) -> List[_LocatedObservation]:
-        """Return the new observation and the older ones that persist."""
-        oldest = new.observation.stamp - source.observation_persistence
-        persistent = [one for one in self._persistent[source.topic] if one.observation.stamp >= oldest]
-        self._persistent[source.topic] = [*persistent, new] if source.observation_persistence > 0.0 else []
-        return [*persistent, new]
+        All of them, not only new ones: what one source has marked last stays until it observes anew, even if
+        another one clears there.
+        """
+        changed = NO_CELLS
+        for buffer in self._buffers:
+            source = buffer.source
+            reach = max(source.obstacle_range, source.raytrace_range) + window.resolution
+            for located in buffer.kept:
+                if source.clearing:
+                    self._integrate(window, source, located, 0.0, source.raytrace_range)
+                sensor = located.sensor_in_frame
+                changed = union(changed, window.bounds_around(sensor.x, sensor.y, reach))
+        for buffer in self._buffers:
+            for located in buffer.kept:
+                if buffer.source.marking:
+                    self._integrate(window, buffer.source, located, buffer.source.obstacle_range, 0.0)
+        return changed
 
     def _integrate(self, window, source, located, mark_range: float, clear_range: float) -> None:
         observation, sensor = located.observation, located.sensor_in_frame
-        highest = min(source.max_obstacle_height, self._settings.max_obstacle_height)
-        at_height = (source.min_obstacle_height <= observation.heights) & (observation.heights <= highest)
-        if np.ndim(at_height) == 0:  # all of the beams, or none
-            at_height = slice(None) if at_height else slice(0)
+        # numba finds the type of a plain tuple several times as fast as that of a named one.
+        block = tuple(window.bounds_around(sensor.x, sensor.y, max(mark_range, clear_range)))
         _integrate(
             self._costs,
-            (sensor.x - window.origin_x) / window.resolution,
-            (sensor.y - window.origin_y) / window.resolution,
-            sensor.yaw + observation.angles[at_height],
-            observation.ranges[at_height],
-            observation.range_min,
-            observation.range_max,
+            block,
+            (
+                (sensor.x - window.origin_x) / window.resolution,
+                (sensor.y - window.origin_y) / window.resolution,
+                observation.sensor_height,
+                sensor.yaw,
+            ),
+            observation.directions_xy,
+            observation.ranges,
+            np.atleast_1d(observation.heights),
+            (source.min_obstacle_height, min(source.max_obstacle_height, self._settings.max_obstacle_height)),
+            (observation.range_min, observation.range_max),
             window.resolution,
             mark_range,
-            clear_range,
+            math.ceil(clear_range / window.resolution),
             source.inf_is_valid,
         )
 
-    def _roll(self, rows: int, cols: int) -> None:
-        """Move the cells with the window; those that enter it get the default cost."""
+    def _roll(self, window: CostmapWindow) -> bool:
+        """Move the cells with the window; those that enter it get the default cost.
+
+        Returns:
+            Whether the window has moved since the last update of this layer.
+        """
+        before, self._window = self._window, window
+        cols = round((window.origin_x - before.origin_x) / window.resolution)
+        rows = round((window.origin_y - before.origin_y) / window.resolution)
         if not (rows or cols):
-            return
+            return False
         moved = np.full_like(self._costs, self._default)
         height, width = self._costs.shape
         if abs(rows) < height and abs(cols) < width:
             kept = self._costs[max(rows, 0) : height + min(rows, 0), max(cols, 0) : width + min(cols, 0)]
             moved[max(-rows, 0) : height + min(-rows, 0), max(-cols, 0) : width + min(-cols, 0)] = kept
         self._costs = moved
+        return True
 
     def apply(self, costs: np.ndarray, window: CostmapWindow, bounds: CellBounds) -> None:
         if self._settings.combination_method != IGNORE_LAYER:
-            _combine(costs, self._costs, tuple(bounds), self._settings.combination_method == OVERWRITE)
+            combine(costs, self._costs, tuple(bounds), self._settings.combination_method == OVERWRITE)
 
     def clear_outside(self, bounds: CellBounds, window: CostmapWindow) -> CellBounds:
         rows, cols = bounds.slices
         kept = self._costs[rows, cols].copy()
         self._costs.fill(self._default)
-        for observations in self._persistent.values():
-            observations.clear()
+        for buffer in self._buffers:
+            buffer.kept.clear()
         self._costs[rows, cols] = kept
         return window.everything
 
@@ -202,74 +241,117 @@ class ObstacleLayer(Layer):
 
     def take_over(self, before: Layer) -> None:
         assert isinstance(before, ObstacleLayer)
-        self._costs = before._costs
-
-
-@numba.njit(cache=True)
-def _combine(costs, above, bounds, overwrite):
-    """Write the higher of both costs, or the upper one; known costs replace unknown ones."""
-    row_min, row_max, col_min, col_max = bounds
-    for row in range(row_min, row_max):
-        for col in range(col_min, col_max):
-            cost = above[row, col]
-            if cost == UNKNOWN:
-                continue
-            if overwrite or costs[row, col] == UNKNOWN or cost > costs[row, col]:
-                costs[row, col] = cost
+        self._costs, self._window = before._costs, before._window
+        for buffer in self._buffers:
+            same = [each for each in before._buffers if each.source == buffer.source]
+            buffer.kept = same[0].kept if same else []
 
 
 @numba.njit(cache=True)
 def _integrate(
-    costs, x, y, angles, ranges, range_min, range_max, resolution, mark_range, clear_range, inf_is_valid
-):
-    """Clear along all beams, then mark their ends; ``x``, ``y``: position of the sensor in cells."""
-    rows, cols = costs.shape
-    for i in range(ranges.size if clear_range > 0.0 else 0):
-        reach = ranges[i]
-        if math.isinf(reach) and reach > 0.0 and inf_is_valid:
-            reach = range_max
-        elif not (range_min <= reach < range_max):
-            continue
-        length = min(reach, clear_range) / resolution
-        _clear_ray(costs, x, y, x + length * math.cos(angles[i]), y + length * math.sin(angles[i]))
+    costs, block, sensor, directions, ranges, heights, height_limits, range_limits, resolution, mark_range,
+    clear_cells, inf_is_valid,
+):  # fmt: skip
+    """Clear along all beams, at most so many cells, or mark their ends.
+
+    ``sensor`` is its position, x and y in cells, z in metres, and its yaw; ``block`` contains all cells that
+    can change. Marks count by their distance from the sensor in three dimensions. Of rays with the same end
+    in the block one is traced.
+    """
+    x, y, z, yaw = sensor
+    c, s = math.cos(yaw) / resolution, math.sin(yaw) / resolution
+    row_min, row_max, col_min, col_max = block
+    traced = np.zeros((2, row_max - row_min, col_max - col_min), dtype=np.bool_)
     for i in range(ranges.size):
-        reach = ranges[i]
-        if range_min <= reach < range_max and reach <= mark_range:
-            row = math.floor(y + reach / resolution * math.sin(angles[i]))
-            col = math.floor(x + reach / resolution * math.cos(angles[i]))
-            if 0 <= row < rows and 0 <= col < cols:
+        height = heights[i] if heights.size > 1 else heights[0]
+        if not height_limits[0] <= height <= height_limits[1]:
+            continue
+        reach, is_return = ranges[i], True
+        if math.isinf(reach) and reach > 0.0 and inf_is_valid:
+            reach, is_return = range_limits[1], False
+        elif not (range_limits[0] <= reach < range_limits[1]):
+            continue
+        end_x = x + reach * (c * directions[i, 0] - s * directions[i, 1])
+        end_y = y + reach * (s * directions[i, 0] + c * directions[i, 1])
+        if clear_cells > 0:
+            row, col, is_cut = _cut_to_costs(costs, x, y, end_x, end_y)
+            spares_end = is_return and not is_cut
+            if row_min <= row < row_max and col_min <= col < col_max:
+                if traced[int(spares_end), row - row_min, col - col_min]:
+                    continue
+                traced[int(spares_end), row - row_min, col - col_min] = True
+            _clear_ray(costs, math.floor(x), math.floor(y), col, row, clear_cells, spares_end)
+        elif is_return and reach * reach + (height - z) * (height - z) < mark_range * mark_range:
+            row, col = math.floor(end_y), math.floor(end_x)
+            if row_min <= row < row_max and col_min <= col < col_max:
                 costs[row, col] = LETHAL
 
 
 @numba.njit(cache=True)
-def _clear_ray(costs, x0, y0, x1, y1):
-    """Clear the cells from (x0, y0) up to but not including (x1, y1), one per row or column."""
+def _cut_to_costs(costs, x, y, end_x, end_y):
+    """Row and column of the end of a ray, or of the last cell before it leaves the costs; whether it does."""
     rows, cols = costs.shape
-    steps = int(max(abs(x1 - x0), abs(y1 - y0)))
-    for step in range(steps):
-        col = math.floor(x0 + (x1 - x0) * step / steps)
-        row = math.floor(y0 + (y1 - y0) * step / steps)
-        if 0 <= row < rows and 0 <= col < cols:
-            costs[row, col] = FREE
+    part = 1.0
+    if end_x < 0.0:
+        part = min(part, x / (x - end_x))
+    elif end_x >= cols:
+        part = min(part, (cols - x) / (end_x - x))
+    if end_y < 0.0:
+        part = min(part, y / (y - end_y))
+    elif end_y >= rows:
+        part = min(part, (rows - y) / (end_y - y))
+    row, col = math.floor(y + part * (end_y - y)), math.floor(x + part * (end_x - x))
+    return min(max(row, 0), rows - 1), min(max(col, 0), cols - 1), part < 1.0
 
 
-# Parameters of costmap_2d's voxel layer; this layer has no voxels.
-FLAT = "(no effect: the layer has no voxels)"
+@numba.njit(cache=True)
+def _clear_ray(costs, col, row, end_col, end_row, most_cells, spares_end):
+    """Clear the cells of a line, at most so many (costmap_2d: raytraceLine, by Bresenham's algorithm).
+
+    ``spares_end``: whether the cell at its end stays, as it contains a return.
+    """
+    rows, cols = costs.shape
+    across, up = abs(end_col - col), abs(end_row - row)
+    col_step, row_step = 1 if end_col > col else -1, 1 if end_row > row else -1
+    length = math.sqrt(across * across + up * up)
+    long, short = max(across, up), min(across, up)
+    steps, error = long, long // 2
+    if length > most_cells:
+        steps, spares_end = int(most_cells / length * long), False
+    for step in range(steps + 1):
+        if not (0 <= row < rows and 0 <= col < cols) or (spares_end and step == steps):
+            return
+        costs[row, col] = FREE
+        error += short
+        turns = error >= long
+        error -= long * turns
+        col += col_step * (across >= up or turns)
+        row += row_step * (across < up or turns)
+
+
+# Parameters that are read with the sources.
+ELSEWHERE = frozenset({"observation_sources", "obstacle_range", "raytrace_range"})
+TOLERANCE = IneffectiveParameter("transform_tolerance", 0.2, "that of the costmap applies", is_dynamic=False)
+FLAT = "this layer has no voxels, obstacles are flat"
 VOXELS = (
-    DynamicParameter("origin_z", 0.0, f"[m] {FLAT}", 0.0),
-    DynamicParameter("z_resolution", 0.2, f"[m] {FLAT}", 0.0, 50.0),
-    DynamicParameter("z_voxels", 10, FLAT, 0, 16),
-    DynamicParameter("unknown_threshold", 15, FLAT, 0, 16),
-    DynamicParameter("mark_threshold", 0, FLAT, 0, 16),
-)
-# Parameters that are read with the sources, or known and without effect.
-IGNORED = frozenset(
-    {"observation_sources", "transform_tolerance", "obstacle_range", "raytrace_range", "publish_voxel_map"}
-    | {voxel.name for voxel in VOXELS}
+    IneffectiveParameter("origin_z", 0.0, FLAT, 0.0),
+    IneffectiveParameter("z_resolution", 0.2, FLAT, 0.0, 50.0),
+    IneffectiveParameter("z_voxels", 10, FLAT, 0, 16),
+    IneffectiveParameter("unknown_threshold", 15, FLAT, 0, 16),
+    IneffectiveParameter("mark_threshold", 0, FLAT, 0, 16),
+    IneffectiveParameter("publish_voxel_map", False, FLAT, is_dynamic=False),
 )
 OBSTACLES: Plugin[Layer] = Plugin(
-    "costmap_2d::ObstacleLayer", ObstacleSettings, ObstacleLayer, ignored=IGNORED
+    "costmap_2d::ObstacleLayer",
+    ObstacleSettings,
+    ObstacleLayer,
+    without_effect=(TOLERANCE,),
+    elsewhere=ELSEWHERE,
 )
 VOXEL: Plugin[Layer] = Plugin(
-    "costmap_2d::VoxelLayer", ObstacleSettings, ObstacleLayer, without_effect=VOXELS, ignored=IGNORED
+    "costmap_2d::VoxelLayer",
+    ObstacleSettings,
+    ObstacleLayer,
+    without_effect=(*VOXELS, TOLERANCE),
+    elsewhere=ELSEWHERE,
 )

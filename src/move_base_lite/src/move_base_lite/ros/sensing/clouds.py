@@ -20,6 +20,10 @@ def points_of(message) -> np.ndarray:
 
 def _points_of_cloud2(message: PointCloud2) -> np.ndarray:
     fields = {field.name: field for field in message.fields}
+    is_packed = [fields[axis].offset for axis in "xyz"] == [0, 4, 8] and message.point_step % 4 == 0
+    if is_packed and not message.is_bigendian and message.row_step == message.width * message.point_step:
+        values = np.frombuffer(message.data, dtype="<f4").reshape(-1, message.point_step // 4)
+        return values[:, :3].astype(np.float64)
     order = ">" if message.is_bigendian else "<"
     point = np.dtype(
         {

@@ -101,5 +101,9 @@ class _Sensor:
             return observation_from_scan(self._source.topic, scan, float(height))
         points = points_of(message) @ sensor_in_base[:3, :3].T + sensor_in_base[:3, 3]
         return observation_from_points(
-            self._source.topic, message.header.stamp.to_sec(), Pose2(float(x), float(y)), points
+            self._source.topic,
+            message.header.stamp.to_sec(),
+            Pose2(float(x), float(y)),
+            points,
+            float(height),
         )

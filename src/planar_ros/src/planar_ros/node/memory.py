@@ -1,0 +1,44 @@
+"""Memory of a node that has loaded its kernels."""
+
+import ctypes
+from pathlib import Path
+from typing import Iterator, Tuple
+
+# LLVM, through which numba compiles and loads kernels.
+COMPILER = "libllvmlite"
+MADV_DONTNEED = 4
+
+
+def release_compiler() -> int:
+    """Drop the resident pages of the compiler that are unchanged copies of its file.
+
+    A node needs them only while kernels are compiled or loaded; Linux reads them again when they are used.
+
+    Returns:
+        Number of bytes of address space whose pages were dropped; 0 on systems without /proc.
+    """
+    try:
+        mappings = list(_unchanged_mappings(Path("/proc/self/smaps").read_text(errors="replace")))
+        advise = ctypes.CDLL(None).madvise
+    except (OSError, AttributeError):
+        return 0
+    released = 0
+    for start, size in mappings:
+        if advise(ctypes.c_void_p(start), ctypes.c_size_t(size), MADV_DONTNEED) == 0:
+            released += size
+    return released
+
+
+def _unchanged_mappings(smaps: str) -> Iterator[Tuple[int, int]]:
+    """Start and size of the compiler's read-only mappings without changed pages (proc(5), smaps)."""
+    start = size = 0
+    for line in smaps.splitlines():
+        words = line.split()
+        if "-" in words[0] and not words[0].endswith(":"):
+            first, end = (int(word, 16) for word in words[0].split("-"))
+            is_compiler = COMPILER in words[-1] and "w" not in words[1]
+            start, size = (first, end - first) if is_compiler else (0, 0)
+        elif words[0] == "Private_Dirty:" and size:
+            if int(words[1]) == 0:
+                yield start, size
+            size = 0
