@@ -1,5 +1,6 @@
 """The physics engine: bodies of a world in PyBullet."""
 
+import math
 from collections import Counter
 from dataclasses import dataclass
 from typing import Dict, Iterable, List, Sequence, Tuple
@@ -17,6 +18,7 @@ from sim_bridge.physics.kinematics import KinematicState
 from sim_bridge.physics.multibody import kinematic_trees
 from sim_bridge.physics.multibody_builder import build_multibody
 from sim_bridge.physics.registry import BodyRegistry
+from sim_bridge.physics.surfaces import ContactSurfaces
 from sim_bridge.world import Body, Joint
 
 SOLVER_ITERATIONS = 50
@@ -80,6 +82,8 @@ class Engine:
         self.set_gravity(gravity)
         # Masses of the links that gravity does not act on.
         self._weightless: Dict[str, float] = {}
+        # Damping of the linear and angular velocity of the links that have any [1/s].
+        self._damping: Dict[str, Tuple[float, float]] = {}
         # Mass properties that were set for static links, which have no mass in Bullet.
         self._static_masses: Dict[str, MassProperties] = {}
         # Bodies that set_positions has moved; removed when they are moved otherwise.
@@ -87,6 +91,7 @@ class Engine:
         self.joints = Joints(self._bullet, self._registry)
         self.attachments = Attachments(self._bullet, self._registry)
         self.collision_queries = CollisionQueries(self._bullet, self._registry)
+        self._surfaces = ContactSurfaces(self._bullet, self._registry)
         self.set_rate(rate)
 
     def close(self) -> None:
@@ -103,8 +108,21 @@ class Engine:
             self._set_step_count(count)
         for name, mass in self._weightless.items():
             self.apply_wrench(name, (0.0, 0.0, mass * self._gravity), (0.0, 0.0, 0.0))
+        if self._damping:
+            self._damp(count / self._rate)
+        self._surfaces.update(count / self._rate)
         self.attachments.update()
         self._bullet.stepSimulation()
+
+    def _damp(self, seconds: float) -> None:
+        """Reduce the velocities of the links with damping."""
+        for name, (linear_damping, angular_damping) in self._damping.items():
+            body_id = self._registry.links[name].body_id
+            linear, angular = self._bullet.getBaseVelocity(body_id)
+            keep_linear, keep_angular = math.exp(-linear_damping * seconds), math.exp(-angular_damping * seconds)
+            self._bullet.resetBaseVelocity(
+                body_id, [keep_linear * each for each in linear], [keep_angular * each for each in angular]
+            )
 
     def save_state(self) -> int:
         """Save poses and velocities of all bodies.
@@ -118,6 +136,7 @@ class Engine:
         """Restore a saved state; no body may have been added or removed since."""
         self._bullet.restoreState(state_id)
         self._planar_bodies.clear()
+        self._surfaces.reset()
 
     def set_rate(self, rate: int) -> None:
         """Set the number of physics steps per second."""
@@ -170,6 +189,10 @@ class Engine:
             for body in tree.bodies:
                 if not body.has_gravity and body.mass is not None:
                     self._weightless[body.name] = body.mass
+            root = tree.bodies[0]
+            if any(root.damping) and root.mass is not None:
+                self._damping[root.name] = root.damping
+        self._surfaces.reset()
 
     def remove(self, name: str) -> None:
         """Remove a link with its whole multibody."""
@@ -181,7 +204,9 @@ class Engine:
     def _remove_body(self, body_id: int) -> None:
         self._bullet.removeBody(body_id)
         self._registry.remove(body_id)
+        self._surfaces.reset()
         self._weightless = {key: mass for key, mass in self._weightless.items() if self.has_link(key)}
+        self._damping = {key: damping for key, damping in self._damping.items() if self.has_link(key)}
         self._static_masses = {key: mass for key, mass in self._static_masses.items() if self.has_link(key)}
 
     def has_link(self, name: str) -> bool:

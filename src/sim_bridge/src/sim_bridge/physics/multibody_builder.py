@@ -15,6 +15,8 @@ from sim_bridge.world import Body, Joint
 
 # Bullet's limit: the root and the links of one multibody.
 MAX_PARTS = 128
+# Bullet's limit of the velocities of a multibody, which is 100 m/s and rad/s unless it is set.
+MAX_VELOCITY = 1e6
 _KINDS = {"revolute": pybullet.JOINT_REVOLUTE, "prismatic": pybullet.JOINT_PRISMATIC}
 
 
@@ -75,7 +77,8 @@ def _configure_parts(
     """Register the links and joints of a multibody and set what createMultiBody does not accept."""
     for index, body in bodies.items():
         registry.assign_link(body_id, index, body.name)
-        _set_contact_properties(bullet, body_id, index, body)
+        registry.surfaces[body_id, index] = body.surface
+        _set_dynamics(bullet, body_id, index)
     for index, body, joint in zip(indices, tree.bodies, tree.joints):
         registry.links[body.name] = BulletLink(body_id, index, body.inertia.pose_in_body)
         if body.inertia.moments is not None and body.mass is not None:
@@ -111,16 +114,15 @@ def _bodies_of_links(tree: KinematicTree, indices: List[int], links: List[Dict[s
     return owners
 
 
-def _set_contact_properties(bullet: BulletClient, body_id: int, link_index: int, body: Body) -> None:
-    """Set friction, restitution and damping, which createMultiBody does not accept."""
+def _set_dynamics(bullet: BulletClient, body_id: int, link_index: int) -> None:
+    """Remove Bullet's own damping and its limit of velocities."""
     bullet.changeDynamics(
         body_id,
         link_index,
-        lateralFriction=body.surface.friction,
-        restitution=body.surface.restitution,
-        linearDamping=body.damping[0],
-        angularDamping=body.damping[1],
+        linearDamping=0.0,
+        angularDamping=0.0,
         jointDamping=0.0,
+        maxJointVelocity=MAX_VELOCITY,
     )
 
 

@@ -121,6 +121,12 @@ class Vehicle:
         """
         return self._engine.collision_queries.floors_below(points)
 
+    def cast_rays(
+        self, origin: np.ndarray, directions: np.ndarray, max_range: float
+    ) -> Tuple[np.ndarray, List[str]]:
+        """Cast rays at all but this robot (``CollisionQueries.cast_rays``)."""
+        return self._engine.collision_queries.cast_rays(origin, directions, max_range, self.base)
+
     @property
     def gravity(self) -> float:
         """Downward acceleration [m/s^2]."""

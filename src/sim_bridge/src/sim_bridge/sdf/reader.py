@@ -1,5 +1,6 @@
 """Reads worlds and models from SDF."""
 
+import math
 from pathlib import Path
 from typing import Iterator, List, Optional, Sequence, Tuple, cast
 
@@ -33,6 +34,8 @@ from sim_bridge.world import (
 )
 
 DEFAULT_GRAVITY = 9.8
+# Default step of Gazebo [s], to which <velocity_decay> refers, and the largest decay in it.
+GAZEBO_STEP, MAX_DECAY = 0.001, 1.0 - 1e-9
 
 
 def load_world(path, model_folders: Sequence[Path] = (), strict: bool = False) -> World:
@@ -273,9 +276,16 @@ class _SdfReader:
         if surface is None:
             return SurfaceProperties()
         self._warnings.check_children(surface)
-        mu = surface.number("friction", "ode", "mu", default=1.0)
-        bounce = surface.number("bounce", "restitution_coefficient", default=0.0)
-        return SurfaceProperties(min(max(mu, 0.0), 1.0), min(max(bounce, 0.0), 1.0))
+        ode = surface.child("friction", "ode")
+        friction = min(ode.number("mu", default=1.0), ode.number("mu2", default=1.0)) if ode else 1.0
+        bounce = surface.child("bounce")
+        if bounce is None:
+            return SurfaceProperties(max(friction, 0.0))
+        return SurfaceProperties(
+            max(friction, 0.0),
+            min(max(bounce.number("restitution_coefficient", default=0.0), 0.0), 1.0),
+            bounce.number("threshold", default=0.0) if bounce.child("threshold") else None,
+        )
 
 
 def _links_of(model: SdfModel, scope: str = "") -> List[Tuple[str, np.ndarray]]:
@@ -294,10 +304,13 @@ def _pose_in_link(part: Element, link: Element, model: SdfModel, link_in_model: 
 
 
 def _damping(link: Element) -> Tuple[float, float]:
-    return (
-        link.number("velocity_decay", "linear", default=0.0),
-        link.number("velocity_decay", "angular", default=0.0),
-    )
+    """Return the damping [1/s]; <velocity_decay> is the fraction of the velocity lost in a step of Gazebo."""
+    decay = link.child("velocity_decay")
+    if decay is None:
+        return 0.0, 0.0
+    lost = (min(max(decay.number(kind, default=0.0), 0.0), MAX_DECAY) for kind in ("linear", "angular"))
+    linear, angular = (-math.log1p(-share) / GAZEBO_STEP for share in lost)
+    return linear, angular
 
 
 def _gravity(world: Element) -> float:
