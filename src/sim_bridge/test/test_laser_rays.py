@@ -117,7 +117,9 @@ def test_an_upright_laser_sweeps_a_vertical_plane():
     for index, bearing in enumerate(bearings):
         wall = 3.0 / math.cos(bearing)
         up = HEIGHT + wall * math.sin(bearing)
-        expected[index] = min(wall if up < 4.0 else np.inf, HEIGHT / -math.sin(bearing) if bearing < 0 else np.inf)
+        expected[index] = min(
+            wall if up < 4.0 else np.inf, HEIGHT / -math.sin(bearing) if bearing < 0 else np.inf
+        )
     expected[expected > 8.0] = np.inf
     seen = np.isfinite(expected)
     assert np.array_equal(seen, np.isfinite(scan.ranges))
@@ -127,7 +129,9 @@ def test_an_upright_laser_sweeps_a_vertical_plane():
 def test_a_tilted_laser_turns_with_the_robot_and_does_not_see_it():
     scan = scan_of(robot_with(horizontal(31, -3.1, 3.1), rpy="0 1.0 0"), WALL, yaw=math.pi)
     assert np.isfinite(scan.ranges[15])
-    assert scan.ranges[15] == pytest.approx(HEIGHT / math.sin(1.0), abs=0.02), "the floor below the robot's body"
+    assert scan.ranges[15] == pytest.approx(
+        HEIGHT / math.sin(1.0), abs=0.02
+    ), "the floor below the robot's body"
 
 
 def test_a_tilted_laser_reads_laser_retro():
@@ -136,7 +140,9 @@ def test_a_tilted_laser_reads_laser_retro():
 
 
 def test_rows_of_rays_follow_each_other_as_gazebo_ros_laser_publishes_them():
-    vertical = "<vertical><samples>3</samples><min_angle>-0.3</min_angle><max_angle>0.3</max_angle></vertical>"
+    vertical = (
+        "<vertical><samples>3</samples><min_angle>-0.3</min_angle><max_angle>0.3</max_angle></vertical>"
+    )
     robot = robot_with(horizontal(5, -0.4, 0.4) + vertical)
     scan = scan_of(robot, WALL)
     bearings = np.linspace(-0.4, 0.4, 5)

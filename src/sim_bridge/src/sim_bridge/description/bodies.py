@@ -34,6 +34,7 @@ def bodies_of(model: RobotModel, name: str) -> Tuple[Tuple[Body, ...], Tuple[Joi
             base.mass,
             SLIDING,
             inertia=Inertia(centre, base.inertia),
+            has_gravity=bool(model.wheels),  # an omnidirectional base keeps its height
         )
     ]
     joints = []

@@ -172,6 +172,36 @@ def _read_skid_steer(plugin: Element, structure: RobotStructure, profiles: Plugi
     )
 
 
+def _read_planar_move(plugin: Element, structure: RobotStructure, profiles: PluginProfiles) -> None:
+    """Read an omnidirectional drive, which moves the robot without wheels; a negative time-out is none."""
+    timeout = number(plugin, "cmdTimeout", -1.0)
+    profiles.namespace = namespace_of(plugin)
+    profiles.drive = _drive(
+        plugin,
+        structure,
+        [],
+        wheel_radius=1.0,
+        wheel_separation=2.0,
+        torque=math.inf,
+        command_topics=(text(plugin, "commandTopic", "cmd_vel"),),
+        command_timeout=timeout if timeout >= 0.0 else math.inf,
+    )
+    rate: Optional[float] = number(plugin, "odometryRate", 20.0)
+    if rate is not None and rate <= 0.0:
+        rate = None
+        profiles.warnings.append(
+            f"{plugin.place}: <odometryRate> is not positive: no odometry in Gazebo, here the simulation's rate"
+        )
+    profiles.odometry = OdometryProfile(
+        "world",
+        text(plugin, "odometryTopic", "odom"),
+        text(plugin, "odometryFrame", "odom"),
+        text(plugin, "robotBaseFrame", "base_footprint"),
+        rate=rate,
+        variances=(1e-5, 1e-5, *UNMEASURED, 1e-3),
+    )
+
+
 def _read_kobuki(plugin: Element, structure: RobotStructure, profiles: PluginProfiles) -> None:
     joints = [plugin.required(f"{side}_wheel_joint_name").text for side in ("left", "right")]
     profiles.namespace = namespace_of(plugin)
@@ -234,6 +264,7 @@ _DRIVES: Dict[str, Callable[[Element, RobotStructure, PluginProfiles], None]] = 
     "gazebo_ros_diff_drive": _read_diff_drive,
     "gazebo_ros_skid_steer_drive": _read_skid_steer,
     "gazebo_ros_kobuki": _read_kobuki,
+    "gazebo_ros_planar_move": _read_planar_move,
 }
 _PLUGINS: Dict[str, Callable[[Element, RobotStructure, PluginProfiles], None]] = {
     **_DRIVES,

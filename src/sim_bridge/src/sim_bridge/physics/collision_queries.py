@@ -15,7 +15,7 @@ ROBOT_GROUP = 4
 FLOOR_SEARCH_DEPTH = 10.0
 # Bullet's largest number of rays in one call.
 RAY_BATCH = 16383
-# How often a ray may leave a surface of the body that it passes through, and the distance that it skips then [m].
+# Surfaces of the excluded body that a ray may pass, and the distance that it skips behind each [m].
 MAX_PASSES, PASSED_SURFACE = 16, 1e-4
 
 
@@ -98,8 +98,8 @@ class CollisionQueries:
             excluded: Name of a link of the body that rays pass through.
 
         Returns:
-            The length (N,) of each ray [m], infinite without a hit, and the name of the link that it hits; empty
-            if there is none.
+            The length (N,) of each ray [m], infinite without a hit, and the name of the link that it hits,
+            empty if there is none.
         """
         excluded_id = self._registry.links[excluded].body_id
         lengths, links = np.full(len(directions), np.inf), [""] * len(directions)

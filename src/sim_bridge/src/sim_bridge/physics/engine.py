@@ -119,7 +119,10 @@ class Engine:
         for name, (linear_damping, angular_damping) in self._damping.items():
             body_id = self._registry.links[name].body_id
             linear, angular = self._bullet.getBaseVelocity(body_id)
-            keep_linear, keep_angular = math.exp(-linear_damping * seconds), math.exp(-angular_damping * seconds)
+            keep_linear, keep_angular = (
+                math.exp(-linear_damping * seconds),
+                math.exp(-angular_damping * seconds),
+            )
             self._bullet.resetBaseVelocity(
                 body_id, [keep_linear * each for each in linear], [keep_angular * each for each in angular]
             )
@@ -257,6 +260,21 @@ class Engine:
         if not self._registry.is_static(link.body_id):
             linear = state.linear + cross(state.angular, centre[:3, 3] - state.pose[:3, 3])
             self._bullet.resetBaseVelocity(link.body_id, linear.tolist(), state.angular.tolist())
+
+    def set_velocity(self, name: str, linear: Sequence[float], angular: Sequence[float]) -> None:
+        """Set the velocity of the root link of a body that physics moves.
+
+        Args:
+            name: Name of the link.
+            linear: Velocity (3,) of the link frame's origin, in the world frame [m/s].
+            angular: Angular velocity (3,), in the world frame [rad/s].
+        """
+        link = self._registry.links[name]
+        centre = centre_of_mass_of(self._bullet, link)
+        arm = centre[:3, 3] - (centre @ link.from_centre)[:3, 3]
+        self._bullet.resetBaseVelocity(
+            link.body_id, (np.array(linear) + cross(angular, arm)).tolist(), angular
+        )
 
     def set_positions(self, positions: Iterable[Tuple[str, float, float]]) -> None:
         """Move single bodies in the plane; height and orientation stay (see KinematicBodies).

@@ -1,10 +1,10 @@
 """Friction and restitution of two surfaces in contact, as of Gazebo's ODE.
 
-ODE takes the smaller coefficient of the two surfaces, Bullet multiplies them. So each surface gets a factor such
-that the product of two factors is the smaller of the two coefficients: 1 for static surfaces, and for a movable one
-its own coefficient, at most that of most static surfaces. Where this does not hold for each pair that may meet,
-because static surfaces differ or movable models touch each other, the factors of friction follow the present
-contacts.
+ODE takes the smaller coefficient of the two surfaces, Bullet multiplies them. So each surface gets a factor
+such that the product of two factors is the smaller of the two coefficients: 1 for static surfaces, and for a
+movable one its own coefficient, at most that of most static surfaces. Where this is wrong for some pair that
+may meet, because static surfaces differ or movable models touch each other, the factors of friction follow the
+present contacts.
 """
 
 from collections import Counter
@@ -74,7 +74,7 @@ class ContactSurfaces:
         self._is_stale, self._is_ambiguous = False, not self._are_exact(factors)
 
     def _factors(self, coefficients: Coefficients) -> Coefficients:
-        """Return the factors that are right as long as static surfaces agree and movable ones do not touch."""
+        """Return the factors that are right if static surfaces agree and movable ones do not touch."""
         static = [value for part, value in coefficients.items() if value > 0.0 and self._is_static(part)]
         usual = Counter(static).most_common(1)[0][0] if static else MAX_FRICTION
         return {
@@ -97,8 +97,8 @@ class ContactSurfaces:
     def _follow_contacts(self) -> None:
         """Set the factors of friction so that they are right for the present contacts.
 
-        Starting from static surfaces, the strongest contact of a surface determines its factor. So all contacts
-        are right unless they form a cycle.
+        Starting from static surfaces, the strongest contact of a surface determines its factor. So all
+        contacts are right unless they form a cycle.
         """
         factors = self._factors(self._friction)
         known = {part for part in factors if self._is_static(part)}

@@ -12,12 +12,15 @@ from defusedxml.common import DefusedXmlException
 from planar.files.reading import read_bytes
 from planar.geometry.limits import MAX_COORDINATE, is_within
 from sim_bridge.errors import WorldError
-from sim_bridge.geometry.pose3 import pose3
+from sim_bridge.geometry.pose3 import from_quaternion, pose3
 
 # Bound of all numbers: above any that Gazebo writes, and small enough to be multiplied.
 LARGEST = 1e30
 # A larger number means no bound: Gazebo writes its largest one.
 UNLIMITED = 1e15
+TRUE = ("1", "true")
+# Values of a pose's rotation_format.
+EULER, QUATERNION = "euler_rpy", "quat_xyzw"
 # Length that Gazebo replaces 0 by [m].
 THINNEST = 1e-4
 _VALUE_WITH_BRACKET = re.compile(r"""=(?:"[^"\n]*<[^"\n]*"|'[^'\n]*<[^'\n]*')""")
@@ -152,10 +155,12 @@ class Element:
     def flag(self, tag: str) -> bool:
         """Return whether the child ``tag`` is true; False if there is none."""
         element = self.child(tag)
-        return element is not None and element.text.lower() in ("1", "true")
+        return element is not None and element.text.lower() in TRUE
 
     def raw_pose(self) -> Optional[np.ndarray]:
         """Return the pose (4, 4) of this element's <pose>, in the frame that the <pose> names.
+
+        Angles are in radians, or in degrees or a quaternion if the <pose> says so (SDF 1.9).
 
         Returns:
             The pose; None if there is no <pose>.
@@ -163,9 +168,20 @@ class Element:
         element = self.child("pose")
         if element is None or not element.text:
             return None
-        values = element.numbers(6)
+        rotation_format = element.attribute("rotation_format") or EULER
+        if rotation_format not in (EULER, QUATERNION):
+            raise element.error(f"rotation_format must be {EULER} or {QUATERNION}, got {rotation_format!r}")
+        values = element.numbers(6 if rotation_format == EULER else 7)
         if not is_within(MAX_COORDINATE, *values):
             raise element.error(f"coordinates must be within {MAX_COORDINATE:g}, got {element.text!r}")
+        if rotation_format == QUATERNION:
+            if not any(values[3:]):
+                raise element.error("the quaternion is zero")
+            pose = from_quaternion(values[3:])
+            pose[:3, 3] = values[:3]
+            return pose
+        if element.attribute("degrees").lower() in TRUE:
+            values[3:] = map(math.radians, values[3:])
         return pose3(*values)
 
     def number(self, *path: str, default: float) -> float:

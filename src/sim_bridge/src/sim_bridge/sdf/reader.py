@@ -65,7 +65,7 @@ def read_model(
     Args:
         xml: The text: a model, or a world that includes one.
         name: Name of the model.
-        pose: Pose (4, 4) in the world.
+        pose: Pose (4, 4) in the world of the frame in which the text places the model.
         model_folders: Folders that are searched for ``model://`` URIs.
         strict: Treat a missing mesh or model as an error.
 
@@ -135,13 +135,19 @@ class _SdfReader:
             self._trajectories += [trajectory] if trajectory else []
 
     def read_model(self, element: Element, name: str, pose: np.ndarray) -> None:
-        self._add_model(self._models.model(element, element, Path(), name), pose, None)
+        self._add_placed(self._models.model(element, element, Path(), name), pose)
 
     def read_include(self, include: Element, name: str, pose: np.ndarray) -> None:
         model = self._models.included(include, Path())
         if model is not None:
-            model.name = name
-            self._add_model(model, pose, None)
+            model.name, model.placed_by = name, include
+            self._add_placed(model, pose)
+
+    def _add_placed(self, model: SdfModel, pose: np.ndarray) -> None:
+        """Add a model where its <pose> places it in a frame at ``pose``, as gazebo_ros spawns it."""
+        frames = SdfFrames({model.name: model.frames}.get)
+        frames.declare(model.name, model.placed_by, inside=model.placement())
+        self._add_model(model, pose @ frames.frame(model.name, model.element), None)
 
     def _add_model(self, model: SdfModel, in_world: np.ndarray, state: Optional[ModelState]) -> None:
         """Add a model; one with a drive plugin is added as a robot."""

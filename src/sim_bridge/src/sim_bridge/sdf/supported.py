@@ -45,7 +45,12 @@ IGNORED: Dict[str, FrozenSet[str]] = {
     "axis": _tags("initial_position"),
 }
 
-DRIVES = ("gazebo_ros_diff_drive", "gazebo_ros_skid_steer_drive", "gazebo_ros_kobuki")
+DRIVES = (
+    "gazebo_ros_diff_drive",
+    "gazebo_ros_skid_steer_drive",
+    "gazebo_ros_kobuki",
+    "gazebo_ros_planar_move",
+)
 
 # World plugins whose work is done here without them: the ROS interface, colliding actors, a gripper.
 REDUNDANT_PLUGINS = frozenset(

@@ -61,7 +61,7 @@ class RobotSensorContext:
     @property
     def twist(self) -> Twist2:
         if self._twist is None:
-            self._twist = twist_in_base(self.base)
+            self._twist = twist_in_base(self.base, self._vehicle.is_omnidirectional)
         return self._twist
 
     @property

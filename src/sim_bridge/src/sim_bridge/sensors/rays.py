@@ -7,7 +7,7 @@ import numpy as np
 
 from sim_bridge.sensors.base import SensorContext
 
-# Cosine of the angle up to which a mounted laser counts as level, 0.2 degrees: a robot on a floor tilts as much.
+# Cosine of the tilt up to which a laser counts as level, 0.2 degrees: a robot on a floor tilts as much.
 LEVEL_COSINE = 1.0 - 6e-6
 
 
