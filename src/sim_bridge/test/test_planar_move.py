@@ -114,7 +114,8 @@ def test_it_pushes_what_stands_in_its_way():
 def test_a_model_of_sdf_with_the_plugin_is_a_robot_and_its_z_is_that_of_the_floor():
     text = """<sdf version='1.6'><model name='any'><link name='base_footprint'><pose>0 0 0.1 0 0 0</pose>
     <inertial><mass>3</mass></inertial><collision name='c'>
-    <geometry><box><size>0.4 0.4 0.2</size></box></geometry></collision></link><plugin name='p' filename='libgazebo_ros_planar_move.so'/></model></sdf>"""
+    <geometry><box><size>0.4 0.4 0.2</size></box></geometry></collision></link>
+    <plugin name='p' filename='libgazebo_ros_planar_move.so'/></model></sdf>"""
     (model,) = read_model(text, "cart", pose3(1.0, 2.0)).robots
     profile, base_in_world = read_sdf_robot(model)
     assert profile.drive.is_omnidirectional

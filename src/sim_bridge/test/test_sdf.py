@@ -366,8 +366,8 @@ def test_ignored_content_of_one_kind_gives_one_warning_with_its_count(load):
     sensor = "<link name='l'><sensor name='s' type='camera'/></link>"
     world = load(model(sensor, "a") + model(sensor, "b") + model("<gripper name='g'/>", "c"))
     assert len(world.warnings) == 2
-    assert "gripper 'g'" in world.warnings[0]
-    assert "sensor 's': ignored (and 1 more like it)" in world.warnings[1]
+    assert "test.world:1: sdf > world 'w' > model 'c' > gripper 'g': has no effect" in world.warnings[1]
+    assert "sensor 's': has no effect (and 1 more like it)" in world.warnings[0]
 
 
 def test_a_missing_mesh_gives_one_warning_and_is_an_error_if_strict(load):

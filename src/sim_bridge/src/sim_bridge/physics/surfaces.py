@@ -3,8 +3,8 @@
 ODE takes the smaller coefficient of the two surfaces, Bullet multiplies them. So each surface gets a factor
 such that the product of two factors is the smaller of the two coefficients: 1 for static surfaces, and for a
 movable one its own coefficient, at most that of most static surfaces. Where this is wrong for some pair that
-may meet, because static surfaces differ or movable models touch each other, the factors of friction follow the
-present contacts.
+may meet, because static surfaces differ or movable models touch each other, the factors of friction follow
+the present contacts.
 """
 
 from collections import Counter

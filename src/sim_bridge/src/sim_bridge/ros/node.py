@@ -27,6 +27,7 @@ from sim_bridge.ros.description import find_file, model_folders
 from sim_bridge.ros.faults.service import FaultServer
 from sim_bridge.ros.gazebo import GazeboInterface
 from sim_bridge.ros.gazebo.server import NAMESPACE
+from sim_bridge.ros.notices import log_warnings
 from sim_bridge.ros.performance import Performance
 from sim_bridge.ros.robot_manager import RobotManager
 from sim_bridge.ros.timing.lock_step import LockStep
@@ -61,10 +62,16 @@ class Bridge:
         rate = simulation_settings.odometry_rate
         self._clock_steps = _steps_between(settings.clock_rate, rate, "clock_rate")
         joint_steps = _steps_between(settings.joint_state_rate, rate, "joint_state_rate")
-        robots = _robots_from_parameters(robot)
+        robots = {
+            name: (robot_named(each.robot, find_file), each)
+            for name, each in _robots_from_parameters(robot).items()
+        }
         world = world_of(settings)
-        for warning in world.warnings:
-            rospy.logwarn("%s", warning)
+        driven = {model.name: read_sdf_robot(model) for model in world.robots}
+        profiles = [profile for profile, _ in [*robots.values(), *driven.values()]]
+        log_warnings(
+            [*world.warnings, *(text for each in profiles for text in each.warnings)], settings.strict
+        )
         self._calls = CallQueue()
         self._faults = FaultServer(settings.faults_file, settings.seed, self._calls)
         self._scene = Scene(world, simulation_settings, settings.seed, self._faults.wrappers)
@@ -76,16 +83,16 @@ class Bridge:
         self._performance = Performance()
         self._time = TimeControl(self._scene, pacer, self._lock_step, self._calls)
         self._robots = RobotManager(self._scene, self._calls, joint_steps)
-        for name, each in robots.items():
-            profile, start = robot_named(each.robot, find_file), Pose2(each.x, each.y, each.yaw)
-            self._robots.add(name, profile, start, namespace=each.namespace)
-        for model in world.robots:
-            profile, pose = read_sdf_robot(model)
-            self._robots.add(model.name, profile, to_pose2(pose), float(pose[2, 3]))
+        for name, (profile, each) in robots.items():
+            self._robots.add(name, profile, Pose2(each.x, each.y, each.yaw), namespace=each.namespace)
+        for name, (profile, pose) in driven.items():
+            self._robots.add(name, profile, to_pose2(pose), float(pose[2, 3]))
         # As Gazebo does: nodes that start from now on use simulated time.
         if not rospy.has_param("/use_sim_time"):
             rospy.set_param("/use_sim_time", True)
-        self._gazebo = GazeboInterface(self._scene, self._robots, self._time, self._calls, model_folders())
+        self._gazebo = GazeboInterface(
+            self._scene, self._robots, self._time, self._calls, model_folders(), settings.strict
+        )
         if rospy.resolve_name("~") != NAMESPACE:  # else Gazebo's own parameters have that name
             self._time.advertise_speed()
         rospy.Subscriber("~add_box", Marker, self._on_box, queue_size=10)
