@@ -77,7 +77,7 @@ def test_the_smaller_friction_of_the_two_surfaces_acts(floor, box, least):
     assert deceleration(scene, "box") == pytest.approx(least, rel=0.04, abs=0.003)
 
 
-def test_a_stack_slides_by_the_friction_of_its_own_surfaces():
+def test_a_stack_slides_by_the_friction_between_its_parts():
     """The lower box is held by 0.6 on 0.6; the upper one slides on it by 0.3 on 0.6."""
     scene = scene_of(
         model("floor", PLANE, friction(0.6), static=True),

@@ -15,8 +15,7 @@ from sim_bridge.physics.collision_queries import CollisionQueries
 from sim_bridge.physics.frames import centre_of_mass_of, link_at, root_pose_of
 from sim_bridge.physics.joints import Joints
 from sim_bridge.physics.kinematics import KinematicState
-from sim_bridge.physics.multibody import kinematic_trees
-from sim_bridge.physics.multibody_builder import build_multibody
+from sim_bridge.physics.multibody import build_multibody, kinematic_trees
 from sim_bridge.physics.registry import BodyRegistry
 from sim_bridge.physics.surfaces import ContactSurfaces
 from sim_bridge.world import Body, Joint
@@ -109,23 +108,10 @@ class Engine:
         for name, mass in self._weightless.items():
             self.apply_wrench(name, (0.0, 0.0, mass * self._gravity), (0.0, 0.0, 0.0))
         if self._damping:
-            self._damp(count / self._rate)
+            _damp(self._bullet, self._registry, self._damping, count / self._rate)
         self._surfaces.update(count / self._rate)
         self.attachments.update()
         self._bullet.stepSimulation()
-
-    def _damp(self, seconds: float) -> None:
-        """Reduce the velocities of the links with damping."""
-        for name, (linear_damping, angular_damping) in self._damping.items():
-            body_id = self._registry.links[name].body_id
-            linear, angular = self._bullet.getBaseVelocity(body_id)
-            keep_linear, keep_angular = (
-                math.exp(-linear_damping * seconds),
-                math.exp(-angular_damping * seconds),
-            )
-            self._bullet.resetBaseVelocity(
-                body_id, [keep_linear * each for each in linear], [keep_angular * each for each in angular]
-            )
 
     def save_state(self) -> int:
         """Save poses and velocities of all bodies.
@@ -343,3 +329,16 @@ class Engine:
         self._weightless.pop(name, None)
         if not has_gravity:
             self._weightless[name] = mass
+
+
+def _damp(
+    bullet: BulletClient, registry: BodyRegistry, damping: Dict[str, Tuple[float, float]], seconds: float
+) -> None:
+    """Reduce the velocities of root links by their damping of the linear and angular one [1/s]."""
+    for name, rates in damping.items():
+        body_id = registry.links[name].body_id
+        keep_linear, keep_angular = (math.exp(-rate * seconds) for rate in rates)
+        linear, angular = bullet.getBaseVelocity(body_id)
+        bullet.resetBaseVelocity(
+            body_id, [keep_linear * each for each in linear], [keep_angular * each for each in angular]
+        )

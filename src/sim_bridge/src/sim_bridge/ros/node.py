@@ -2,7 +2,8 @@
 
 import dataclasses
 import threading
-from typing import Any, Callable, Dict, List, Mapping
+from itertools import chain
+from typing import Any, Callable, Dict, List, Mapping, Tuple
 
 import rospy
 from rosgraph_msgs.msg import Clock
@@ -17,7 +18,7 @@ from planar_ros.node.parameters import parameters_below, read_settings
 from planar_ros.node.runner import run
 from rospy_transport.replacements import install
 from sim_bridge.config import BridgeSettings, RobotSettings, SimulationSettings
-from sim_bridge.description import read_sdf_robot
+from sim_bridge.description import RobotProfile, read_sdf_robot
 from sim_bridge.geometry.pose3 import to_pose2
 from sim_bridge.noise import noise_named
 from sim_bridge.pacing import Pacer
@@ -62,16 +63,10 @@ class Bridge:
         rate = simulation_settings.odometry_rate
         self._clock_steps = _steps_between(settings.clock_rate, rate, "clock_rate")
         joint_steps = _steps_between(settings.joint_state_rate, rate, "joint_state_rate")
-        robots = {
-            name: (robot_named(each.robot, find_file), each)
-            for name, each in _robots_from_parameters(robot).items()
-        }
         world = world_of(settings)
-        driven = {model.name: read_sdf_robot(model) for model in world.robots}
-        profiles = [profile for profile, _ in [*robots.values(), *driven.values()]]
-        log_warnings(
-            [*world.warnings, *(text for each in profiles for text in each.warnings)], settings.strict
-        )
+        robots = _robots_of(world, robot)
+        profiles = (profile for _, profile, *_ in robots)
+        log_warnings([*world.warnings, *chain(*(each.warnings for each in profiles))], settings.strict)
         self._calls = CallQueue()
         self._faults = FaultServer(settings.faults_file, settings.seed, self._calls)
         self._scene = Scene(world, simulation_settings, settings.seed, self._faults.wrappers)
@@ -83,10 +78,8 @@ class Bridge:
         self._performance = Performance()
         self._time = TimeControl(self._scene, pacer, self._lock_step, self._calls)
         self._robots = RobotManager(self._scene, self._calls, joint_steps)
-        for name, (profile, each) in robots.items():
-            self._robots.add(name, profile, Pose2(each.x, each.y, each.yaw), namespace=each.namespace)
-        for name, (profile, pose) in driven.items():
-            self._robots.add(name, profile, to_pose2(pose), float(pose[2, 3]))
+        for start in robots:
+            self._robots.add(*start)
         # As Gazebo does: nodes that start from now on use simulated time.
         if not rospy.has_param("/use_sim_time"):
             rospy.set_param("/use_sim_time", True)
@@ -149,6 +142,18 @@ def _robots_from_parameters(robot: RobotSettings) -> Dict[str, RobotSettings]:
     if names:
         return {name: read_settings(RobotSettings, namespace=f"~robots/{name}") for name in sorted(names)}
     return {ROBOT_NAME: robot} if robot.robot else {}
+
+
+def _robots_of(world: World, robot: RobotSettings) -> List[Tuple[str, RobotProfile, Pose2, float, str]]:
+    """Return name, profile, start, height and namespace of the robots of the parameters and of a world."""
+    robots = []
+    for name, each in _robots_from_parameters(robot).items():
+        start = Pose2(each.x, each.y, each.yaw)
+        robots.append((name, robot_named(each.robot, find_file), start, 0.0, each.namespace))
+    for model in world.robots:
+        profile, pose = read_sdf_robot(model)
+        robots.append((model.name, profile, to_pose2(pose), float(pose[2, 3]), ""))
+    return robots
 
 
 def _steps_between(rate: int, step_rate: int, name: str) -> int:

@@ -183,7 +183,7 @@ class Element:
     def raw_pose(self) -> Optional[np.ndarray]:
         """Return the pose (4, 4) of this element's <pose>, in the frame that the <pose> names.
 
-        Angles are in radians, or in degrees or a quaternion if the <pose> says so (SDF 1.9).
+        Angles are in radians, or in degrees or a quaternion, if its attributes state it (SDF 1.9).
 
         Returns:
             The pose; None if there is no <pose>.

@@ -98,13 +98,9 @@ class _SdfReader:
         self._warnings = warnings
         self._models = ModelReader(model_folders, warnings)
 
-    @property
-    def _roots(self) -> List[Element]:
-        return [self._root, *self._models.roots]
-
     def world(self, name: str) -> World:
         """Return a world of all that has been read."""
-        for root in self._roots:
+        for root in [self._root, *self._models.roots]:
             self._warnings.add_unread(root, [robot.element for robot in self._robots])
         return World(
             name,
@@ -119,7 +115,7 @@ class _SdfReader:
 
     def read_world(self, world: Element, folder: Path) -> None:
         """Read a <world>."""
-        self._gravity(world)
+        self._gravity_z, self._step = _physics(world, self._warnings)
         self._lights.extend(read_lights(world))
         states = list(world.children("state"))
         insertions = [inserted for state in states for inserted in state.children("insertions")]
@@ -143,17 +139,6 @@ class _SdfReader:
             body, trajectory = read_actor(actor, self._warnings)
             self._bodies.append(body)
             self._trajectories += [trajectory] if trajectory else []
-
-    def _gravity(self, world: Element) -> None:
-        """Read gravity and the step of physics."""
-        for physics in world.children("physics"):
-            self._step = physics.number("max_step_size", default=GAZEBO_STEP)
-        gravity, of_physics = world.child("gravity"), world.child("physics", "gravity")
-        gravity = gravity or of_physics
-        if gravity is not None:
-            x, y, self._gravity_z = gravity.numbers(3)
-            if x or y:
-                self._warnings.skip(gravity, "only its z acts")
 
     def read_model(self, element: Element, name: str, pose: np.ndarray) -> None:
         self._add_placed(self._models.model(element, element, Path(), name), pose)
@@ -307,6 +292,21 @@ class _SdfReader:
             if element is not None and surface != surfaces[0]:
                 self._warnings.skip(element, f"{NO_EFFECT}: the surface of the link's first collision counts")
         return surfaces[0] if surfaces else SurfaceProperties()
+
+
+def _physics(world: Element, warnings: SkippedElements) -> Tuple[float, float]:
+    """Return gravity along z [m/s^2] and the step of physics [s] of a <world>."""
+    step = GAZEBO_STEP
+    for physics in world.children("physics"):
+        step = physics.number("max_step_size", default=GAZEBO_STEP)
+    gravity, of_physics = world.child("gravity"), world.child("physics", "gravity")
+    gravity = gravity or of_physics
+    if gravity is None:
+        return -DEFAULT_GRAVITY, step
+    x, y, z = gravity.numbers(3)
+    if x or y:
+        warnings.skip(gravity, "only its z acts")
+    return z, step
 
 
 def _links_of(model: SdfModel, scope: str = "") -> List[Tuple[str, np.ndarray]]:

@@ -111,7 +111,7 @@ def _is_default(parent: Element, element: Element) -> bool:
 
 
 def _is_empty(element: Element) -> bool:
-    """Return whether an element says nothing, such as <bounce/>, or only defaults and what is ignored."""
+    """Return whether an element states nothing, such as <bounce/>, or only defaults and what is ignored."""
     children = list(element.children())
     if element.tag in ("plugin", "sensor") or element.text or (element.xml.keys() and not children):
         return False
