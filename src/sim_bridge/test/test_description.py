@@ -137,7 +137,9 @@ def test_an_unknown_plugin_gives_one_warning():
     unknown = "<gazebo><plugin name='{}' filename='libgazebo_ros_control.so'/></gazebo>"
     text = urdf(DRIVE.format(more="") + unknown.format(1) + unknown.format(2))
     assert read_urdf_robot(text, "mine.urdf").warnings == (
-        "robot mine: plugin libgazebo_ros_control.so is not supported, ignored",
+        "mine.urdf:31: robot 'mine' > gazebo > plugin '1' (libgazebo_ros_control.so): is not supported, "
+        "ignored (and 1 more like it)",
+        "mine.urdf:25: robot 'mine' > joint 'swivel': joint is fixed: only driven wheels turn",
     )
 
 

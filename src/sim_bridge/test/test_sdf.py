@@ -366,8 +366,8 @@ def test_ignored_content_of_one_kind_gives_one_warning_with_its_count(load):
     sensor = "<link name='l'><sensor name='s' type='camera'/></link>"
     world = load(model(sensor, "a") + model(sensor, "b") + model("<gripper name='g'/>", "c"))
     assert len(world.warnings) == 2
-    assert "gripper 'g'" in world.warnings[0]
-    assert "sensor 's': ignored (and 1 more like it)" in world.warnings[1]
+    assert "test.world:1: sdf > world 'w' > model 'c' > gripper 'g': has no effect" in world.warnings[1]
+    assert "sensor 's': has no effect (and 1 more like it)" in world.warnings[0]
 
 
 def test_a_missing_mesh_gives_one_warning_and_is_an_error_if_strict(load):
@@ -432,3 +432,47 @@ def test_moments_of_inertia_that_are_not_positive_are_ignored_with_a_warning(loa
     world = load(f"<model name='m'><link name='l'>{inertial}</link></model>")
     assert world.bodies[0].inertia.moments is None
     assert "link 'l' > inertial > inertia: ignored" in world.warnings[0]
+
+
+def test_angles_of_a_pose_may_be_in_degrees_or_a_quaternion(load):
+    half = math.sqrt(0.5)
+    for pose in (
+        "<pose degrees='true'>1 2 3 0 0 90</pose>",
+        f"<pose rotation_format='quat_xyzw'>1 2 3 0 0 {half} {half}</pose>",
+        "<pose rotation_format='euler_rpy' degrees='false'>1 2 3 0 0 1.5707963267948966</pose>",
+    ):
+        link = f"<link name='l'><collision name='c'>{UNIT_BOX}</collision></link>"
+        (body,) = load(model(pose + link)).bodies
+        assert body.pose_in_world == pytest.approx(pose3(1.0, 2.0, 3.0, yaw=math.pi / 2.0)), pose
+
+
+@pytest.mark.parametrize(
+    ("pose", "message"),
+    [
+        ("<pose rotation_format='axis'>1 2 3 0 0 0</pose>", "rotation_format must be euler_rpy or quat_xyzw"),
+        ("<pose rotation_format='quat_xyzw'>1 2 3 0 0 0</pose>", "expected 7 finite numbers"),
+        ("<pose rotation_format='quat_xyzw'>1 2 3 0 0 0 0</pose>", "the quaternion is zero"),
+    ],
+)
+def test_a_rotation_that_is_not_valid_is_an_error(load, pose, message):
+    with pytest.raises(WorldError, match=message):
+        load(model(pose + "<link name='l'/>"))
+
+
+def test_a_spawned_model_stands_where_its_own_pose_places_it_in_the_requests_frame(tmp_path):
+    crate = f"<link name='l'><collision name='c'>{UNIT_BOX}</collision></link>"
+    request = pose3(1.0, 2.0, 0.0, yaw=math.pi / 2.0)
+    text = f"<sdf version='1.6'>{model('<pose>0.3 0 0.5 0 0 0</pose>' + crate)}</sdf>"
+    (body,) = read_model(text, "mine", request).bodies
+    assert body.pose_in_world == pytest.approx(pose3(1.0, 2.3, 0.5, yaw=math.pi / 2.0))
+    assert body.pose_in_model == pytest.approx(np.eye(4))
+    add_model(tmp_path, "crate", model("<pose>7 7 7 0 0 0</pose>" + crate))
+    include = "<include><uri>model://crate</uri>{}</include>"
+    for pose, z in (("<pose>0.3 0 0.5 0 0 0</pose>", 0.5), ("<pose>0.3 0 0 0 0 0</pose>", 0.0)):
+        text = f"<sdf version='1.6'><world name='w'>{include.format(pose)}</world></sdf>"
+        (body,) = read_model(text, "mine", request, [tmp_path]).bodies
+        assert body.name == "mine::l"
+        assert body.pose_in_world == pytest.approx(pose3(1.0, 2.3, z, yaw=math.pi / 2.0))
+    text = f"<sdf version='1.6'><world name='w'>{include.format('')}</world></sdf>"
+    (body,) = read_model(text, "mine", request, [tmp_path]).bodies
+    assert body.pose_in_world == pytest.approx(request), "gazebo_ros gives an <include> the request's pose"

@@ -80,7 +80,9 @@ class BridgeSettings(RunTimeSettings):
     clock_rate: int = parameter(50, "rate of /clock; must divide odometry_rate", "Hz", POSITIVE)
     joint_state_rate: int = parameter(10, "rate of joint_states; must divide odometry_rate", "Hz", POSITIVE)
     strict: bool = parameter(
-        False, "a missing mesh or model is an error; otherwise it is ignored with a warning"
+        False,
+        "a missing mesh or model, or an element of a world or robot without effect, is an error; otherwise "
+        "it is ignored with a warning",
     )
     noise: str = parameter(
         "turtlebot",

@@ -12,7 +12,7 @@ from planar.deprecation import deprecated_names
 from sim_bridge.config import SimulationSettings
 from sim_bridge.description import RobotProfile
 from sim_bridge.description.bodies import bodies_of
-from sim_bridge.driving.drive import BASE_RATE, RampedDrive, WheelDrive
+from sim_bridge.driving.drive import BASE_RATE, OmnidirectionalDrive, RampedDrive, WheelDrive
 from sim_bridge.physics.engine import Engine
 from sim_bridge.physics.vehicle import Vehicle
 from sim_bridge.sensors.base import Mounting, Reading, Sensor, SensorSpec
@@ -147,7 +147,8 @@ class Robot:
         """
         self._set_rates(mounting.settings)
         drive, odometry = self.profile.drive, self.profile.odometry
-        self._drive = self._wrappers.drive(RampedDrive(drive))
+        self._controller = OmnidirectionalDrive(drive) if drive.is_omnidirectional else RampedDrive(drive)
+        self._drive = self._wrappers.drive(self._controller)
         self._context.refresh(0.0)
         self._context.clear_contacts()
         truth, wheels, contacts = GroundTruth(), WheelEncoders(), ContactSensor()
@@ -228,7 +229,12 @@ class Robot:
         """
         if step % self._interval == 0:
             seconds = self._interval / self._settings.physics_rate
-            self.vehicle.drive(*self._drive.wheel_speeds(seconds), seconds)
+            left, right = self._drive.wheel_speeds(seconds)
+            if isinstance(self._controller, OmnidirectionalDrive):
+                lateral = self._controller.lateral_speed
+                self.vehicle.move(Twist2(0.5 * (left + right), 0.5 * (right - left), lateral), seconds)
+            else:
+                self.vehicle.drive(left, right, seconds)
 
     def end_steps(self, step: int, stamp: float) -> None:
         """Run the measurements of the sensors that are due.

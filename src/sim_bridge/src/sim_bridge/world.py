@@ -69,10 +69,12 @@ class SurfaceProperties:
     Attributes:
         friction: Coefficient of Coulomb friction.
         restitution: Coefficient of restitution: 0 is inelastic, 1 elastic.
+        bounce_threshold: Impact speed below which it does not bounce [m/s]; None for that of the engine.
     """
 
     friction: float = 1.0
     restitution: float = 0.0
+    bounce_threshold: Optional[float] = None
 
 
 @dataclass(frozen=True, eq=False)

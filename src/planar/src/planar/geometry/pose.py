@@ -97,19 +97,21 @@ def check_pose(pose: Pose2, what: str) -> None:
 
 @dataclass(frozen=True)
 class Twist2:
-    """Velocity of a differential-drive base.
+    """Velocity of a base in the plane.
 
     Attributes:
         v: Forward speed [m/s].
         omega: Turning rate, positive to the left [rad/s].
+        lateral: Speed to the left of an omnidirectional base [m/s].
     """
 
     v: float = 0.0
     omega: float = 0.0
+    lateral: float = 0.0
 
     def is_finite(self) -> bool:
-        """Return whether neither speed is NaN or infinite."""
-        return math.isfinite(self.v) and math.isfinite(self.omega)
+        """Return whether no speed is NaN or infinite."""
+        return math.isfinite(self.v) and math.isfinite(self.omega) and math.isfinite(self.lateral)
 
 
 def quaternion_zw(yaw: float) -> Tuple[float, float]:

@@ -9,7 +9,7 @@ from sim_bridge.geometry.pose3 import IDENTITY
 from sim_bridge.world import Body, Inertia, Joint, SurfaceProperties
 
 # The base has no friction: its casters roll in any direction, and its sides must not climb walls.
-SLIDING, ROLLING = SurfaceProperties(friction=0.0), SurfaceProperties(friction=1.0)
+SLIDING = SurfaceProperties(friction=0.0)
 
 
 def bodies_of(model: RobotModel, name: str) -> Tuple[Tuple[Body, ...], Tuple[Joint, ...]]:
@@ -34,14 +34,14 @@ def bodies_of(model: RobotModel, name: str) -> Tuple[Tuple[Body, ...], Tuple[Joi
             base.mass,
             SLIDING,
             inertia=Inertia(centre, base.inertia),
+            has_gravity=bool(model.wheels),  # an omnidirectional base keeps its height
         )
     ]
     joints = []
     for joint_name, wheel in model.wheels.items():
         link = f"{name}::{wheel.part.name}"
-        inertia = Inertia(moments=wheel.part.inertia)
-        bodies.append(
-            Body(link, wheel.origin_in_base, wheel.part.collisions, wheel.part.mass, ROLLING, inertia=inertia)
-        )
+        inertia, surface = Inertia(moments=wheel.part.inertia), SurfaceProperties(wheel.friction)
+        part = wheel.part
+        bodies.append(Body(link, wheel.origin_in_base, part.collisions, part.mass, surface, inertia=inertia))
         joints.append(Joint(f"{name}::{joint_name}", "revolute", bodies[0].name, link, IDENTITY, wheel.axis))
     return tuple(bodies), tuple(joints)

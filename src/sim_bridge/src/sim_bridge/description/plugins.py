@@ -27,6 +27,7 @@ ODOMETRY_SOURCES = ("encoder", "world", "gyro")
 DEFAULT_SOURCE = "world"
 # Plugins whose work is done here without them: ground truth is always published.
 REDUNDANT_PLUGINS = {"gazebo_ros_p3d"}
+UNSUPPORTED = "is not supported, ignored"
 # Variances of z, roll and pitch, which odometry does not measure.
 UNMEASURED = (1e12, 1e12, 1e12)
 # Variances that Kobuki's plugin publishes for orientation and turn rates, about x, y and z.
@@ -67,11 +68,11 @@ def read_plugins(structure: RobotStructure, elements: GazeboElements) -> PluginP
         WorldError: A value is not valid; the text names the element.
     """
     profiles = PluginProfiles()
-    unsupported, failed_drives = [], []
+    failed_drives = []
     for plugin in elements.plugins:
         reader = _PLUGINS.get(plugin_name(plugin))
         if reader is None:
-            unsupported.append(plugin)
+            elements.skipped.skip(plugin, UNSUPPORTED)
             continue
         try:
             reader(plugin, structure, profiles)
@@ -84,21 +85,19 @@ def read_plugins(structure: RobotStructure, elements: GazeboElements) -> PluginP
     profiles.warnings += [f"{error}; ignored, as in Gazebo" for error in failed_drives]
     for link, sensor in elements.sensors:
         if link not in structure.links:
-            profiles.warnings.append(f"{sensor.place}: there is no link {link!r}, ignored, as in Gazebo")
+            elements.skipped.skip(sensor, f"there is no link {link!r}, ignored, as in Gazebo")
             continue
+        if sensor.child("plugin") is None:
+            elements.skipped.skip(sensor, "has no plugin, which would publish it")
         for plugin in sensor.children("plugin"):
             read = SENSORS.get(plugin_name(plugin))
             if read is not None:
                 profiles.sensors.append(read(_found(plugin, sensor, link, structure, profiles)))
             else:
-                unsupported.append(plugin)
+                elements.skipped.skip(sensor, f"plugin {plugin.attribute('filename')} {UNSUPPORTED}")
     if not any(isinstance(sensor, LaserProfile) for sensor in profiles.sensors):
         cameras = [sensor for sensor in profiles.sensors if isinstance(sensor, CameraProfile)]
         profiles.sensors += [scan_of(camera) for camera in cameras if camera.depth_topic][:1]
-    names = dict.fromkeys(plugin.attribute("filename") for plugin in unsupported)
-    profiles.warnings += [
-        f"robot {structure.name}: plugin {name} is not supported, ignored" for name in names
-    ]
     return profiles
 
 
@@ -172,6 +171,36 @@ def _read_skid_steer(plugin: Element, structure: RobotStructure, profiles: Plugi
     )
 
 
+def _read_planar_move(plugin: Element, structure: RobotStructure, profiles: PluginProfiles) -> None:
+    """Read an omnidirectional drive, which moves the robot without wheels; a negative time-out is none."""
+    timeout = number(plugin, "cmdTimeout", -1.0)
+    profiles.namespace = namespace_of(plugin)
+    profiles.drive = _drive(
+        plugin,
+        structure,
+        [],
+        wheel_radius=1.0,
+        wheel_separation=2.0,
+        torque=math.inf,
+        command_topics=(text(plugin, "commandTopic", "cmd_vel"),),
+        command_timeout=timeout if timeout >= 0.0 else math.inf,
+    )
+    rate: Optional[float] = number(plugin, "odometryRate", 20.0)
+    if rate is not None and rate <= 0.0:
+        rate = None
+        profiles.warnings.append(
+            f"{plugin.place}: <odometryRate> must be positive; using the rate of the simulation"
+        )
+    profiles.odometry = OdometryProfile(
+        "world",
+        text(plugin, "odometryTopic", "odom"),
+        text(plugin, "odometryFrame", "odom"),
+        text(plugin, "robotBaseFrame", "base_footprint"),
+        rate=rate,
+        variances=(1e-5, 1e-5, *UNMEASURED, 1e-3),
+    )
+
+
 def _read_kobuki(plugin: Element, structure: RobotStructure, profiles: PluginProfiles) -> None:
     joints = [plugin.required(f"{side}_wheel_joint_name").text for side in ("left", "right")]
     profiles.namespace = namespace_of(plugin)
@@ -234,6 +263,7 @@ _DRIVES: Dict[str, Callable[[Element, RobotStructure, PluginProfiles], None]] = 
     "gazebo_ros_diff_drive": _read_diff_drive,
     "gazebo_ros_skid_steer_drive": _read_skid_steer,
     "gazebo_ros_kobuki": _read_kobuki,
+    "gazebo_ros_planar_move": _read_planar_move,
 }
 _PLUGINS: Dict[str, Callable[[Element, RobotStructure, PluginProfiles], None]] = {
     **_DRIVES,

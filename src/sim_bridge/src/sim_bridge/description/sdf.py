@@ -22,7 +22,7 @@ def read_sdf(model: DrivenModel) -> Tuple[RobotStructure, GazeboElements, np.nda
     Raises:
         RobotError: The links and joints are not one tree.
     """
-    elements = GazeboElements()
+    elements = GazeboElements(model.element)
     elements.add(model.element, "")
     for link in model.element.children("link"):
         elements.add(link, link.name)

@@ -1,7 +1,7 @@
 """The link tree of a robot, and the rigid parts that physics needs: a base and its driven wheels."""
 
 from dataclasses import dataclass, field
-from typing import Dict, Iterable, List, Sequence, Tuple
+from typing import Dict, Iterable, List, Mapping, Sequence, Tuple
 
 import numpy as np
 
@@ -9,6 +9,7 @@ from sim_bridge.errors import RobotError
 from sim_bridge.geometry.pose3 import IDENTITY, transform_points
 from sim_bridge.geometry.shapes import outline_points
 from sim_bridge.sdf.element import Element
+from sim_bridge.sdf.warnings import SkippedElements
 from sim_bridge.world import Collision
 
 
@@ -77,11 +78,13 @@ class Wheel:
         part: The links of the wheel.
         origin_in_base: Pose (4, 4) of the part's frame in the base frame.
         axis: Unit vector (3,) of the axis in the part's frame.
+        friction: Coefficient of friction.
     """
 
     part: RigidPart
     origin_in_base: np.ndarray
     axis: np.ndarray
+    friction: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,11 +178,12 @@ class RobotStructure:
             link = joint.parent
         return in_base
 
-    def assemble(self, driven: Iterable[str]) -> RobotModel:
+    def assemble(self, driven: Iterable[str], friction: Mapping[str, float] = {}) -> RobotModel:
         """Return the rigid parts of the robot.
 
         Args:
             driven: Joints of the driven wheels; all other joints are treated as fixed.
+            friction: Coefficients of friction of wheels, by the name of the link, that are not 1.
 
         Raises:
             RobotError: One of the joints does not exist, or a part has no mass.
@@ -187,7 +191,10 @@ class RobotStructure:
         wheel_joints = [self._joint(name) for name in driven]
         wheels = {
             joint.name: Wheel(
-                self._part(joint.child, wheel_joints), self.pose_in_base(joint.child), joint.axis
+                self._part(joint.child, wheel_joints),
+                self.pose_in_base(joint.child),
+                joint.axis,
+                friction.get(joint.child, 1.0),
             )
             for joint in wheel_joints
         }
@@ -236,12 +243,16 @@ class GazeboElements:
     """Elements of a description that Gazebo reads.
 
     Attributes:
+        root: The <robot> or <model>.
         plugins: <plugin> elements of the model.
         sensors: <sensor> elements, each with the name of its link.
+        skipped: Warnings about elements without effect.
     """
 
+    root: Element
     plugins: List[Element] = field(default_factory=list)
     sensors: List[Tuple[str, Element]] = field(default_factory=list)
+    skipped: SkippedElements = field(default_factory=SkippedElements)
 
     def add(self, parent: Element, link: str) -> None:
         """Add the <plugin> and <sensor> children of an element.

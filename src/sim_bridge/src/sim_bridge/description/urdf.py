@@ -1,11 +1,9 @@
 """URDF text as links, joints and <gazebo> elements."""
 
 from pathlib import Path
-from typing import Callable, List, Optional, Tuple
+from typing import Callable, Optional, Tuple
 
-import defusedxml.ElementTree
 import numpy as np
-from defusedxml.common import DefusedXmlException
 
 from planar.geometry.limits import MAX_COORDINATE, is_within
 from sim_bridge.description.structure import GazeboElements, RobotJoint, RobotLink, RobotStructure
@@ -13,13 +11,14 @@ from sim_bridge.errors import RobotError, WorldError
 from sim_bridge.geometry.meshes import load_mesh
 from sim_bridge.geometry.pose3 import IDENTITY, pose3
 from sim_bridge.geometry.shapes import Box, Cylinder, MeshFile, Shape, Sphere
-from sim_bridge.sdf.element import Element
+from sim_bridge.sdf.element import Element, parse_text
+from sim_bridge.sdf.warnings import SkippedElements
 from sim_bridge.world import Collision
 
 FindFile = Callable[[str], Optional[Path]]
 
 
-def read_urdf(text: str, where: str, find_file: FindFile) -> Tuple[RobotStructure, GazeboElements, List[str]]:
+def read_urdf(text: str, where: str, find_file: FindFile) -> Tuple[RobotStructure, GazeboElements]:
     """Read the structure of a robot from a URDF text.
 
     Args:
@@ -28,43 +27,37 @@ def read_urdf(text: str, where: str, find_file: FindFile) -> Tuple[RobotStructur
         find_file: Finds the files of package:// and model:// URIs.
 
     Returns:
-        The link tree, the <gazebo> elements, and a warning for each mesh that is ignored.
+        The link tree, and the <gazebo> elements with warnings about missing meshes.
 
     Raises:
         RobotError: The description cannot be used.
     """
     robot = _parse(text, where)
-    reader = _UrdfReader(find_file)
+    elements = GazeboElements(robot)
+    reader = _UrdfReader(find_file, elements.skipped)
     try:
         links = [reader.link(link) for link in robot.children("link")]
         joints = [_joint(joint) for joint in robot.children("joint")]
         structure = RobotStructure(robot.name or where, links, joints)
-        elements = GazeboElements()
         for gazebo in robot.children("gazebo"):
             elements.add(gazebo, gazebo.attribute("reference"))
     except WorldError as error:
         raise RobotError(str(error)) from None
-    return structure, elements, reader.warnings
+    return structure, elements
 
 
 def _parse(text: str, where: str) -> Element:
     try:
-        xml = defusedxml.ElementTree.fromstring(text, forbid_dtd=False)
-    except DefusedXmlException as error:
-        raise RobotError(f"{where}: refused, defines entities ({type(error).__name__})") from None
-    except (defusedxml.ElementTree.ParseError, ValueError) as error:
-        raise RobotError(f"{where}: not well-formed XML ({error})") from None
-    if xml.tag != "robot":
-        raise RobotError(f"{where}: its root is <{xml.tag}>, expected <robot>")
-    return Element(xml, where)
+        return parse_text(text, where, ("robot",))
+    except WorldError as error:
+        raise RobotError(str(error)) from None
 
 
 class _UrdfReader:
-    """Reads links and collects warnings about missing files."""
+    """Reads links; ``skipped`` receives warnings about missing files."""
 
-    def __init__(self, find_file: FindFile):
-        self.warnings: List[str] = []
-        self._find_file = find_file
+    def __init__(self, find_file: FindFile, skipped: SkippedElements):
+        self._find_file, self._skipped = find_file, skipped
 
     def link(self, link: Element) -> RobotLink:
         collisions = []
@@ -83,7 +76,8 @@ class _UrdfReader:
         return RobotLink(link.name, mass, origin[:3, 3], inertia, tuple(collisions))
 
     def _shape(self, geometry: Element) -> Optional[Shape]:
-        for kind in geometry.children():
+        for each in geometry.children():
+            kind = geometry.required(each.tag)
             if kind.tag == "box":
                 x, y, z = kind.attribute_sizes("size", 3)
                 return Box((x, y, z))
@@ -100,7 +94,7 @@ class _UrdfReader:
         name = mesh.attribute("filename")
         path = self._find_file(name)
         if path is None:
-            self.warnings.append(f"{mesh.place}: {name} not found, ignored")
+            self._skipped.skip(mesh, f"{name} not found, ignored")
             return None
         x, y, z = mesh.attribute_numbers("scale", 3, (1.0, 1.0, 1.0))
         return load_mesh(MeshFile(path, (x, y, z)))

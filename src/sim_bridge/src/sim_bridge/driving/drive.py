@@ -1,7 +1,7 @@
 """Wheel drives: the contract, and the base controller that turns velocity commands into wheel speeds."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol, Tuple
 
 from planar import Twist2
@@ -41,7 +41,9 @@ class WheelDrive(Protocol):
 
 @dataclass(frozen=True)
 class DriveProfile:
-    """Parameters of a drive with driven wheels on both sides.
+    """Parameters of a drive with driven wheels on both sides, or of an omnidirectional one without wheels.
+
+    The latter turns as if it had wheels of radius 1 m, 2 m apart; its lateral speed needs none.
 
     Attributes:
         left_joints: Joints of the wheels on the left.
@@ -68,6 +70,11 @@ class DriveProfile:
     max_acceleration: float = math.inf
     max_turn_acceleration: float = math.inf
     command_timeout: float = math.inf
+
+    @property
+    def is_omnidirectional(self) -> bool:
+        """Whether the base moves in any direction without driven wheels."""
+        return not self.joints
 
     @property
     def joints(self) -> Tuple[str, ...]:
@@ -125,6 +132,20 @@ class RampedDrive:
             (self._v - rim_speed) / limits.wheel_radius,
             (self._v + rim_speed) / limits.wheel_radius,
         )
+
+
+class OmnidirectionalDrive(RampedDrive):
+    """The controller of a base that also moves sideways, at once (gazebo_ros_planar_move)."""
+
+    @property
+    def lateral_speed(self) -> float:
+        """Commanded speed to the left [m/s]."""
+        return self._target.lateral
+
+    def command(self, twist: Twist2) -> None:
+        super().command(twist)
+        if self._has_power and twist.is_finite():
+            self._target = replace(self._target, lateral=twist.lateral)
 
 
 def _clip(value: float, limit: float) -> float:

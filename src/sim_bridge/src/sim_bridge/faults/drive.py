@@ -1,6 +1,7 @@
 """Faults of velocity commands and of wheels."""
 
 from collections import deque
+from dataclasses import replace
 from typing import Deque, Optional, Tuple
 
 import numpy as np
@@ -69,7 +70,7 @@ class SaturatedVelocity(FaultKind):
     unit = "m/s"
 
     def command(self, twist: Twist2) -> Optional[Twist2]:
-        return Twist2(min(twist.v, self._strength), twist.omega)
+        return replace(twist, v=min(twist.v, self._strength))
 
 
 class DeafDrive(FaultKind):

@@ -1,5 +1,6 @@
 """The physics engine: bodies of a world in PyBullet."""
 
+import math
 from collections import Counter
 from dataclasses import dataclass
 from typing import Dict, Iterable, List, Sequence, Tuple
@@ -14,9 +15,9 @@ from sim_bridge.physics.collision_queries import CollisionQueries
 from sim_bridge.physics.frames import centre_of_mass_of, link_at, root_pose_of
 from sim_bridge.physics.joints import Joints
 from sim_bridge.physics.kinematics import KinematicState
-from sim_bridge.physics.multibody import kinematic_trees
-from sim_bridge.physics.multibody_builder import build_multibody
+from sim_bridge.physics.multibody import build_multibody, kinematic_trees
 from sim_bridge.physics.registry import BodyRegistry
+from sim_bridge.physics.surfaces import ContactSurfaces
 from sim_bridge.world import Body, Joint
 
 SOLVER_ITERATIONS = 50
@@ -82,6 +83,8 @@ class Engine:
         self.set_gravity(gravity)
         # Masses of the links that gravity does not act on.
         self._weightless: Dict[str, float] = {}
+        # Damping of the linear and angular velocity of the links that have any [1/s].
+        self._damping: Dict[str, Tuple[float, float]] = {}
         # Mass properties that were set for static links, which have no mass in Bullet.
         self._static_masses: Dict[str, MassProperties] = {}
         # Bodies that set_positions has moved; removed when they are moved otherwise.
@@ -89,6 +92,7 @@ class Engine:
         self.joints = Joints(self._bullet, self._registry)
         self.attachments = Attachments(self._bullet, self._registry)
         self.collision_queries = CollisionQueries(self._bullet, self._registry)
+        self._surfaces = ContactSurfaces(self._bullet, self._registry)
         self.set_rate(rate)
 
     def close(self) -> None:
@@ -105,6 +109,9 @@ class Engine:
             self._set_step_count(count)
         for name, mass in self._weightless.items():
             self.apply_wrench(name, (0.0, 0.0, mass * self._gravity), (0.0, 0.0, 0.0))
+        if self._damping:
+            _damp(self._bullet, self._registry, self._damping, count / self._rate)
+        self._surfaces.update(count / self._rate)
         self.attachments.update()
         self._bullet.stepSimulation()
 
@@ -120,6 +127,7 @@ class Engine:
         """Restore a saved state; no body may have been added or removed since."""
         self._bullet.restoreState(state_id)
         self._planar_bodies.clear()
+        self._surfaces.reset()
 
     def set_rate(self, rate: int) -> None:
         """Set the number of physics steps per second."""
@@ -172,6 +180,10 @@ class Engine:
             for body in tree.bodies:
                 if not body.has_gravity and body.mass is not None:
                     self._weightless[body.name] = body.mass
+            root = tree.bodies[0]
+            if any(root.damping) and root.mass is not None:
+                self._damping[root.name] = root.damping
+        self._surfaces.reset()
 
     def remove(self, name: str) -> None:
         """Remove a link with its whole multibody."""
@@ -183,7 +195,9 @@ class Engine:
     def _remove_body(self, body_id: int) -> None:
         self._bullet.removeBody(body_id)
         self._registry.remove(body_id)
+        self._surfaces.reset()
         self._weightless = {key: mass for key, mass in self._weightless.items() if self.has_link(key)}
+        self._damping = {key: damping for key, damping in self._damping.items() if self.has_link(key)}
         self._static_masses = {key: mass for key, mass in self._static_masses.items() if self.has_link(key)}
 
     def has_link(self, name: str) -> bool:
@@ -234,6 +248,21 @@ class Engine:
         if not self._registry.is_static(link.body_id):
             linear = state.linear + cross(state.angular, centre[:3, 3] - state.pose[:3, 3])
             self._bullet.resetBaseVelocity(link.body_id, linear.tolist(), state.angular.tolist())
+
+    def set_velocity(self, name: str, linear: Sequence[float], angular: Sequence[float]) -> None:
+        """Set the velocity of the root link of a body that physics moves.
+
+        Args:
+            name: Name of the link.
+            linear: Velocity (3,) of the link frame's origin, in the world frame [m/s].
+            angular: Angular velocity (3,), in the world frame [rad/s].
+        """
+        link = self._registry.links[name]
+        centre = centre_of_mass_of(self._bullet, link)
+        arm = centre[:3, 3] - (centre @ link.from_centre)[:3, 3]
+        self._bullet.resetBaseVelocity(
+            link.body_id, (np.array(linear) + cross(angular, arm)).tolist(), angular
+        )
 
     def set_positions(self, positions: Iterable[Tuple[str, float, float]]) -> None:
         """Move single bodies in the plane; height and orientation stay (see KinematicBodies).
@@ -302,3 +331,16 @@ class Engine:
         self._weightless.pop(name, None)
         if not has_gravity:
             self._weightless[name] = mass
+
+
+def _damp(
+    bullet: BulletClient, registry: BodyRegistry, damping: Dict[str, Tuple[float, float]], seconds: float
+) -> None:
+    """Reduce the velocities of root links by their damping of the linear and angular one [1/s]."""
+    for name, rates in damping.items():
+        body_id = registry.links[name].body_id
+        keep_linear, keep_angular = (math.exp(-rate * seconds) for rate in rates)
+        linear, angular = bullet.getBaseVelocity(body_id)
+        bullet.resetBaseVelocity(
+            body_id, [keep_linear * each for each in linear], [keep_angular * each for each in angular]
+        )

@@ -42,6 +42,10 @@ class ModelJoints:
             del self._joints[name]
         return removed
 
+    def joints_of(self, model: str) -> List[str]:
+        """Return the names, ``model::joint``, of a model's joints."""
+        return [joint.name for joint in self._joints.values() if joint.model == model]
+
     def movable_joints_of(self, model: str) -> List[str]:
         """Return the names, ``model::joint``, of a model's joints that are not fixed."""
         return [

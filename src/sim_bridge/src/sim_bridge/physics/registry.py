@@ -6,7 +6,7 @@ from typing import Dict, List, Optional, Set, Tuple
 import numpy as np
 
 from sim_bridge.geometry.pose3 import inverse
-from sim_bridge.world import Joint
+from sim_bridge.world import Joint, SurfaceProperties
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,12 +57,14 @@ class BodyRegistry:
         links: Links by name.
         joints: Movable joints by name.
         dynamic_bodies: Ids of the bodies that are moved by physics.
+        surfaces: Contact properties by Bullet's id of the body and index of the link; -1 for the root.
     """
 
     def __init__(self):
         self.links: Dict[str, BulletLink] = {}
         self.joints: Dict[str, BulletJoint] = {}
         self.dynamic_bodies: Set[int] = set()
+        self.surfaces: Dict[Tuple[int, int], SurfaceProperties] = {}
         self._link_names: Dict[Tuple[int, int], str] = {}
 
     def is_static(self, body_id: int) -> bool:
@@ -97,4 +99,5 @@ class BodyRegistry:
         self.links = {name: link for name, link in self.links.items() if link.body_id != body_id}
         self.joints = {name: joint for name, joint in self.joints.items() if joint.body_id != body_id}
         self._link_names = {part: link for part, link in self._link_names.items() if part[0] != body_id}
+        self.surfaces = {part: surface for part, surface in self.surfaces.items() if part[0] != body_id}
         self.dynamic_bodies.discard(body_id)

@@ -1,5 +1,6 @@
 """A wheeled robot in the physics engine."""
 
+import math
 from typing import List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
@@ -34,13 +35,13 @@ class Overlap(NamedTuple):
 
 
 class Vehicle:
-    """A base with driven wheels.
+    """A base with driven wheels, or an omnidirectional one without.
 
     Args:
         engine: The physics engine.
         name: Name of the robot.
         bodies: The base, then the wheels; poses are in the base frame.
-        joints: The wheels' joints, those on the left first.
+        joints: The wheels' joints, those on the left first; none for an omnidirectional base.
         left_count: Number of wheels on the left.
         torque: Largest torque of each motor [N m].
         base_in_space: Start pose (4, 4) of the base in the world frame.
@@ -68,10 +69,12 @@ class Vehicle:
         self._collisions = bodies[0].collisions
         self._left_count, self._right_count = left_count, len(joints) - left_count
         self._efforts = [torque] * len(joints)
-        self._motors = engine.joints.motors([joint.name for joint in joints])
         self._engine = engine
         self._speeds: Optional[Tuple[float, float]] = None
-        self._standstill = Standstill(engine, self.base, self._motors)
+        self.is_omnidirectional = not joints
+        if joints:
+            self._motors = engine.joints.motors([joint.name for joint in joints])
+            self._standstill = Standstill(engine, self.base, self._motors)
 
     def drive(self, left_speed: float, right_speed: float, seconds: float) -> None:
         """Set the target speeds of the wheels.
@@ -89,6 +92,19 @@ class Vehicle:
         elif left_speed == right_speed == 0.0:
             self._standstill.update(seconds)
 
+    def move(self, velocity: Twist2, seconds: float) -> None:
+        """Set the velocity of an omnidirectional base, as gazebo_ros_planar_move does.
+
+        Args:
+            velocity: Velocity in the base frame.
+            seconds: Time until the next call [s].
+        """
+        heading = self.state().pose2.yaw + 0.5 * velocity.omega * seconds  # half way of the turn that follows
+        cosine, sine = math.cos(heading), math.sin(heading)
+        x_speed = velocity.v * cosine - velocity.lateral * sine
+        y_speed = velocity.v * sine + velocity.lateral * cosine
+        self._engine.set_velocity(self.base, (x_speed, y_speed, 0.0), (0.0, 0.0, velocity.omega))
+
     def invalidate_speeds(self) -> None:
         """Send the target speeds again at the next ``drive``, even if they are unchanged."""
         self._speeds = None
@@ -99,7 +115,7 @@ class Vehicle:
 
     def wheels(self) -> Tuple[Tuple[float, ...], Tuple[float, ...]]:
         """Return the angles [rad] and speeds [rad/s] of the wheels, those on the left first."""
-        return self._motors.states()
+        return ((), ()) if self.is_omnidirectional else self._motors.states()
 
     def body(self) -> Body:
         """Return the base at its present pose, as the sensors of other robots see it."""
@@ -120,6 +136,12 @@ class Vehicle:
             The heights (N,) [m]; -inf where there is no floor.
         """
         return self._engine.collision_queries.floors_below(points)
+
+    def cast_rays(
+        self, origin: np.ndarray, directions: np.ndarray, max_range: float
+    ) -> Tuple[np.ndarray, List[str]]:
+        """Cast rays at all but this robot (``CollisionQueries.cast_rays``)."""
+        return self._engine.collision_queries.cast_rays(origin, directions, max_range, self.base)
 
     @property
     def gravity(self) -> float:
@@ -142,12 +164,16 @@ class Vehicle:
         return Overlap(links, deepest.normal[0] * distance, deepest.normal[1] * distance)
 
 
-def twist_in_base(state: KinematicState) -> Twist2:
+def twist_in_base(state: KinematicState, is_omnidirectional: bool = False) -> Twist2:
     """Return the velocity of a base along its x axis [m/s] and its turn rate [rad/s].
 
     Args:
         state: Pose and velocity of the base frame in the world.
+        is_omnidirectional: Whether to return the velocity along the y axis, too.
     """
     linear, pose = state.linear, state.pose
     forward = linear.item(0) * pose.item(0, 0) + linear.item(1) * pose.item(1, 0)
-    return Twist2(forward, state.angular.item(2))
+    if not is_omnidirectional:
+        return Twist2(forward, state.angular.item(2))
+    lateral = linear.item(0) * pose.item(0, 1) + linear.item(1) * pose.item(1, 1)
+    return Twist2(forward, state.angular.item(2), lateral)

@@ -63,7 +63,7 @@ class CommandTopics:
         )  # fmt: skip
 
     def _twist(self, message: Twist) -> Twist2:
-        twist = Twist2(message.linear.x, message.angular.z)
+        twist = Twist2(message.linear.x, message.angular.z, message.linear.y)
         if not twist.is_finite():
             rospy.logwarn_throttle(1.0, f"{self._robot}: velocity command is not finite: the robot stops")
         return twist

@@ -41,6 +41,7 @@ class OdometryMsg(Odometry):
         self.header.stamp = stamp
         self.pose.pose = pose2_to_msg(base)
         self.twist.twist.linear.x, self.twist.twist.angular.z = twist.v, twist.omega
+        self.twist.twist.linear.y = twist.lateral
 
     def serialize(self, buff):
         pose, twist = self.pose.pose, self.twist.twist
@@ -48,7 +49,7 @@ class OdometryMsg(Odometry):
         buff.write(self._frames)
         buff.write(_pose(pose.position, pose.orientation))
         buff.write(self._covariance)
-        buff.write(_TWIST.pack(twist.linear.x, 0.0, 0.0, 0.0, 0.0, twist.angular.z))
+        buff.write(_TWIST.pack(twist.linear.x, twist.linear.y, 0.0, 0.0, 0.0, twist.angular.z))
         buff.write(self._covariance)
 
 

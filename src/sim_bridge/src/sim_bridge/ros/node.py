@@ -2,7 +2,8 @@
 
 import dataclasses
 import threading
-from typing import Any, Callable, Dict, List, Mapping
+from itertools import chain
+from typing import Any, Callable, Dict, List, Mapping, Tuple
 
 import rospy
 from rosgraph_msgs.msg import Clock
@@ -17,7 +18,7 @@ from planar_ros.node.parameters import parameters_below, read_settings
 from planar_ros.node.runner import run
 from rospy_transport.replacements import install
 from sim_bridge.config import BridgeSettings, RobotSettings, SimulationSettings
-from sim_bridge.description import read_sdf_robot
+from sim_bridge.description import RobotProfile, read_sdf_robot
 from sim_bridge.geometry.pose3 import to_pose2
 from sim_bridge.noise import noise_named
 from sim_bridge.pacing import Pacer
@@ -27,6 +28,7 @@ from sim_bridge.ros.description import find_file, model_folders
 from sim_bridge.ros.faults.service import FaultServer
 from sim_bridge.ros.gazebo import GazeboInterface
 from sim_bridge.ros.gazebo.server import NAMESPACE
+from sim_bridge.ros.notices import log_warnings
 from sim_bridge.ros.performance import Performance
 from sim_bridge.ros.robot_manager import RobotManager
 from sim_bridge.ros.timing.lock_step import LockStep
@@ -61,10 +63,10 @@ class Bridge:
         rate = simulation_settings.odometry_rate
         self._clock_steps = _steps_between(settings.clock_rate, rate, "clock_rate")
         joint_steps = _steps_between(settings.joint_state_rate, rate, "joint_state_rate")
-        robots = _robots_from_parameters(robot)
         world = world_of(settings)
-        for warning in world.warnings:
-            rospy.logwarn("%s", warning)
+        robots = _robots_of(world, robot)
+        profiles = (profile for _, profile, *_ in robots)
+        log_warnings([*world.warnings, *chain(*(each.warnings for each in profiles))], settings.strict)
         self._calls = CallQueue()
         self._faults = FaultServer(settings.faults_file, settings.seed, self._calls)
         self._scene = Scene(world, simulation_settings, settings.seed, self._faults.wrappers)
@@ -76,16 +78,14 @@ class Bridge:
         self._performance = Performance()
         self._time = TimeControl(self._scene, pacer, self._lock_step, self._calls)
         self._robots = RobotManager(self._scene, self._calls, joint_steps)
-        for name, each in robots.items():
-            profile, start = robot_named(each.robot, find_file), Pose2(each.x, each.y, each.yaw)
-            self._robots.add(name, profile, start, namespace=each.namespace)
-        for model in world.robots:
-            profile, pose = read_sdf_robot(model)
-            self._robots.add(model.name, profile, to_pose2(pose), float(pose[2, 3]))
+        for start in robots:
+            self._robots.add(*start)
         # As Gazebo does: nodes that start from now on use simulated time.
         if not rospy.has_param("/use_sim_time"):
             rospy.set_param("/use_sim_time", True)
-        self._gazebo = GazeboInterface(self._scene, self._robots, self._time, self._calls, model_folders())
+        self._gazebo = GazeboInterface(
+            self._scene, self._robots, self._time, self._calls, model_folders(), settings.strict
+        )
         if rospy.resolve_name("~") != NAMESPACE:  # else Gazebo's own parameters have that name
             self._time.advertise_speed()
         rospy.Subscriber("~add_box", Marker, self._on_box, queue_size=10)
@@ -142,6 +142,18 @@ def _robots_from_parameters(robot: RobotSettings) -> Dict[str, RobotSettings]:
     if names:
         return {name: read_settings(RobotSettings, namespace=f"~robots/{name}") for name in sorted(names)}
     return {ROBOT_NAME: robot} if robot.robot else {}
+
+
+def _robots_of(world: World, robot: RobotSettings) -> List[Tuple[str, RobotProfile, Pose2, float, str]]:
+    """Return name, profile, start, height and namespace of the robots of the parameters and of a world."""
+    robots = []
+    for name, each in _robots_from_parameters(robot).items():
+        start = Pose2(each.x, each.y, each.yaw)
+        robots.append((name, robot_named(each.robot, find_file), start, 0.0, each.namespace))
+    for model in world.robots:
+        profile, pose = read_sdf_robot(model)
+        robots.append((model.name, profile, to_pose2(pose), float(pose[2, 3]), ""))
+    return robots
 
 
 def _steps_between(rate: int, step_rate: int, name: str) -> int:

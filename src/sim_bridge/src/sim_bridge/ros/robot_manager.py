@@ -47,8 +47,6 @@ class RobotManager:
             WorldError: The robot cannot stand there, or the name is taken.
             RobotError: The description cannot be used.
         """
-        for warning in profile.warnings:
-            rospy.logwarn("%s", warning)
         overlapping = self._scene.add_robot(name, profile, base_in_world, z)
         if overlapping:
             rospy.logwarn("%s would start a little inside %s: moved out of it", name, ", ".join(overlapping))

@@ -15,7 +15,9 @@ def scan_to_msg(scan: Scan, profile: LaserProfile) -> LaserScanArrays:
     message = LaserScanArrays()
     message.angle_min = scan.angle_min
     message.angle_increment = scan.angle_increment
-    message.angle_max = scan.angle_min + scan.angle_increment * (len(scan.ranges) - 1)
+    # As gazebo_ros_laser does, several rows follow each other, and the angles are those of one.
+    beams = len(scan.ranges) if profile.grid is None else profile.beams
+    message.angle_max = scan.angle_min + scan.angle_increment * (beams - 1)
     message.scan_time = profile.scan_time
     message.range_min, message.range_max = scan.range_min, scan.range_max
     message.ranges = scan.ranges

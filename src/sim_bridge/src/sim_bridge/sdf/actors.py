@@ -31,7 +31,6 @@ def read_actor(actor: Element, warnings: SkippedElements) -> Tuple[Body, Optiona
     Raises:
         WorldError: A value is not valid.
     """
-    warnings.check_children(actor)
     for plugin in actor.children("plugin"):
         if plugin_name(plugin) not in REDUNDANT_PLUGINS:
             warnings.skip(plugin, "ignored, the actor moves by its trajectory alone")

@@ -1,27 +1,26 @@
 """XML elements with typed access, whose errors name the file and the element."""
 
 import math
-import re
 from pathlib import Path
 from typing import Iterator, List, Optional, Sequence, Tuple
 
-import defusedxml.ElementTree
 import numpy as np
-from defusedxml.common import DefusedXmlException
 
 from planar.files.reading import read_bytes
 from planar.geometry.limits import MAX_COORDINATE, is_within
 from sim_bridge.errors import WorldError
-from sim_bridge.geometry.pose3 import pose3
+from sim_bridge.geometry.pose3 import from_quaternion, pose3
+from sim_bridge.sdf.document import Document, parse_document
 
 # Bound of all numbers: above any that Gazebo writes, and small enough to be multiplied.
 LARGEST = 1e30
 # A larger number means no bound: Gazebo writes its largest one.
 UNLIMITED = 1e15
+TRUE = ("1", "true")
+# Values of a pose's rotation_format.
+EULER, QUATERNION = "euler_rpy", "quat_xyzw"
 # Length that Gazebo replaces 0 by [m].
 THINNEST = 1e-4
-_VALUE_WITH_BRACKET = re.compile(r"""=(?:"[^"\n]*<[^"\n]*"|'[^'\n]*<[^'\n]*')""")
-_VERSION_NUMBER = re.compile(r"[0-9]{1,9}$")
 
 
 class Element:
@@ -29,23 +28,48 @@ class Element:
 
     Methods that convert a text raise WorldError, which names the file and the element, if it is not valid.
 
+    Children that are accessed by tag count as read (``Document``).
+
     Attributes:
         xml: The XML element.
-        file: Name of the file, for errors.
-        version: SDF version of the file, e.g. (1, 6).
+        document: The document that it belongs to.
         tag: Tag of the element.
         name: Its attribute ``name``.
         place: Path of the element in the file, for errors.
     """
 
-    def __init__(self, xml, file: str, place: str = "", version: Tuple[int, ...] = ()):
+    def __init__(self, xml, document: Document, place: str = ""):
         self.xml = xml
-        self.file = file
-        self.version = version or version_of(xml.get("version", ""))
+        self.document = document
         self.tag: str = xml.tag
         self.name: str = xml.get("name", "")
         label = f"{self.tag} '{self.name}'" if self.name else self.tag
         self.place = f"{place} > {label}" if place else label
+
+    @property
+    def file(self) -> str:
+        """Name of the file."""
+        return self.document.file
+
+    @property
+    def version(self) -> Tuple[int, ...]:
+        """SDF version of the file, e.g. (1, 6)."""
+        return self.document.version
+
+    def mark_all(self) -> None:
+        """Mark the element and all below it as read."""
+        for xml in self.xml.iter():
+            self.document.mark(xml)
+
+    @property
+    def is_read(self) -> bool:
+        """Whether the element has been accessed by its tag."""
+        return self.document.is_read(self.xml)
+
+    @property
+    def where(self) -> str:
+        """File, line and path of the element."""
+        return f"{self.file}:{self.document.line(self.xml)}: {self.place}"
 
     def error(self, text: str) -> WorldError:
         """Return an error that names the file and the element."""
@@ -56,10 +80,12 @@ class Element:
         return self.xml.get(name, "")
 
     def children(self, tag: Optional[str] = None) -> Iterator["Element"]:
-        """Yield the child elements, or those with a tag."""
+        """Yield the child elements, or those with a tag, which count as read then."""
         for xml in self.xml.iterfind(tag) if tag else self.xml:
             if isinstance(xml.tag, str):
-                yield Element(xml, self.file, self.place, self.version)
+                if tag:
+                    self.document.mark(xml)
+                yield Element(xml, self.document, self.place)
 
     def child(self, *path: str) -> Optional["Element"]:
         """Return the first element along a path of tags below this one; None if there is none."""
@@ -152,10 +178,12 @@ class Element:
     def flag(self, tag: str) -> bool:
         """Return whether the child ``tag`` is true; False if there is none."""
         element = self.child(tag)
-        return element is not None and element.text.lower() in ("1", "true")
+        return element is not None and element.text.lower() in TRUE
 
     def raw_pose(self) -> Optional[np.ndarray]:
         """Return the pose (4, 4) of this element's <pose>, in the frame that the <pose> names.
+
+        Angles are in radians, or in degrees or a quaternion, if its attributes state it (SDF 1.9).
 
         Returns:
             The pose; None if there is no <pose>.
@@ -163,9 +191,20 @@ class Element:
         element = self.child("pose")
         if element is None or not element.text:
             return None
-        values = element.numbers(6)
+        rotation_format = element.attribute("rotation_format") or EULER
+        if rotation_format not in (EULER, QUATERNION):
+            raise element.error(f"rotation_format must be {EULER} or {QUATERNION}, got {rotation_format!r}")
+        values = element.numbers(6 if rotation_format == EULER else 7)
         if not is_within(MAX_COORDINATE, *values):
             raise element.error(f"coordinates must be within {MAX_COORDINATE:g}, got {element.text!r}")
+        if rotation_format == QUATERNION:
+            if not any(values[3:]):
+                raise element.error("the quaternion is zero")
+            pose = from_quaternion(values[3:])
+            pose[:3, 3] = values[:3]
+            return pose
+        if element.attribute("degrees").lower() in TRUE:
+            values[3:] = map(math.radians, values[3:])
         return pose3(*values)
 
     def number(self, *path: str, default: float) -> float:
@@ -234,29 +273,5 @@ def parse_text(text, file: str, roots: Sequence[str] = ("sdf", "gazebo")) -> Ele
     Raises:
         WorldError: The text is not well-formed, or has another root.
     """
-    try:
-        root = _root_of(text)
-    except DefusedXmlException as error:
-        raise WorldError(f"{file}: refused, defines entities ({type(error).__name__})") from None
-    except (defusedxml.ElementTree.ParseError, ValueError) as error:
-        raise WorldError(f"{file}: not well-formed XML ({error})") from None
-    if root.tag not in roots:
-        raise WorldError(f"{file}: its root is <{root.tag}>, expected <{roots[0]}>")
-    return Element(root, file)
-
-
-def _root_of(text):
-    """Parse XML; like Gazebo's parser, accept a bare "<" in attributes."""
-    try:
-        return defusedxml.ElementTree.fromstring(text, forbid_dtd=False)
-    except defusedxml.ElementTree.ParseError:
-        lenient = text.decode("utf-8", "replace") if isinstance(text, bytes) else text
-        lenient = _VALUE_WITH_BRACKET.sub(lambda match: match.group().replace("<", "&lt;"), lenient)
-        if lenient == text:
-            raise
-        return defusedxml.ElementTree.fromstring(lenient, forbid_dtd=False)
-
-
-def version_of(text: str) -> Tuple[int, ...]:
-    """Return a version as a tuple of integers, so that 1.10 sorts after 1.9."""
-    return tuple(int(number) if _VERSION_NUMBER.match(number) else 0 for number in text.split("."))
+    document = parse_document(text, file, roots)
+    return Element(document.root, document)

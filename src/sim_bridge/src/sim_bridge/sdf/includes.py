@@ -7,7 +7,8 @@ from urllib.parse import ParseResult, unquote, urlparse
 
 from planar.files.reading import exists, read_bytes
 from sim_bridge.errors import WorldError
-from sim_bridge.sdf.element import parse_text, version_of
+from sim_bridge.sdf.document import version_of
+from sim_bridge.sdf.element import parse_text
 
 
 def resolve(uri: str, beside: Path, model_folders: Sequence[Path]) -> Optional[Path]:

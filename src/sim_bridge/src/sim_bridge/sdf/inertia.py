@@ -33,7 +33,6 @@ def read_inertia(link: Element, warnings: SkippedElements) -> Inertia:
     inertial = link.child("inertial")
     if inertial is None:
         return Inertia()
-    warnings.check_children(inertial)
     raw = inertial.raw_pose()
     pose = np.eye(4) if raw is None else raw
     matrix = inertial.child("inertia")

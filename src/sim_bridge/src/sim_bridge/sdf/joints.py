@@ -30,7 +30,6 @@ def read_joint(
     Raises:
         WorldError: A value is not valid or a link does not exist.
     """
-    warnings.check_children(joint)
     kind = joint.attribute("type")
     parent, child = (_link_named(joint, end, links) for end in ("parent", "child"))
     if not child:
@@ -41,6 +40,8 @@ def read_joint(
     in_model = model.frames.pose_of(joint, child)
     full = _Scope(name)
     axis = joint.child("axis")
+    if axis is not None and kind == "fixed":
+        axis.mark_all()  # without effect in Gazebo, too
     fixed = Joint(
         full.joint(joint.name),
         "fixed",
@@ -49,11 +50,7 @@ def read_joint(
         inverse(links[child]) @ in_model,
         np.array([0.0, 0.0, 1.0]),
     )
-    return (
-        fixed
-        if kind == "fixed" or axis is None
-        else _moving(fixed, kind, axis, in_model, model.frames, warnings)
-    )
+    return fixed if kind == "fixed" or axis is None else _moving(fixed, kind, axis, in_model, model.frames)
 
 
 class _Scope:
@@ -79,10 +76,7 @@ def _link_named(joint: Element, end: str, links: Dict[str, np.ndarray]) -> str:
     return element.text
 
 
-def _moving(
-    fixed: Joint, kind: str, axis: Element, in_model: np.ndarray, frames: SdfFrames, warnings: SkippedElements
-) -> Joint:
-    warnings.check_children(axis)
+def _moving(fixed: Joint, kind: str, axis: Element, in_model: np.ndarray, frames: SdfFrames) -> Joint:
     lower = axis.bound("limit", "lower", default=-np.inf)
     upper = axis.bound("limit", "upper", default=np.inf)
     if lower > upper:
@@ -112,9 +106,10 @@ def _direction(axis: Element, in_model: np.ndarray, frames: SdfFrames) -> np.nda
         raise axis.error("an axis needs a direction, got 0 0 0")
     expressed_in = xyz.attribute("expressed_in") if xyz is not None else ""
     frame: Optional[np.ndarray] = None
+    is_in_model = axis.flag("use_parent_model_frame")
     if expressed_in:
         frame = frames.frame(expressed_in, axis)
-    elif axis.flag("use_parent_model_frame") or axis.version < (1, 5):
+    elif is_in_model or axis.version < (1, 5):
         frame = np.eye(4)
     if frame is not None:
         direction = in_model[:3, :3].T @ frame[:3, :3] @ direction

@@ -11,13 +11,14 @@ SUN = Light("sun", (0.8, 0.8, 0.8, 1.0), (0.9, 0.01, 0.001))
 def read_lights(world: Element):
     """Yield the lights of a world, including those of included suns."""
     for light in world.children("light"):
-        yield _light(light)
+        yield read_light(light)
     for include in world.children("include"):
         if built_in(include.required("uri").text) == SUN.name:
             yield SUN
 
 
-def _light(light: Element) -> Light:
+def read_light(light: Element) -> Light:
+    """Read a <light>."""
     diffuse = light.child("diffuse")
     words = len(diffuse.text.split()) if diffuse is not None else 0
     red, green, blue, alpha = (

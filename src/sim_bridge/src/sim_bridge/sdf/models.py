@@ -56,7 +56,7 @@ class SdfModel:
     def is_driven(self) -> bool:
         """Whether it has a drive plugin and is therefore a robot."""
         return not self.is_static and any(
-            plugin_name(plugin) in DRIVES for plugin in self.element.children("plugin")
+            child.tag == "plugin" and plugin_name(child) in DRIVES for child in self.element.children()
         )
 
     def add(self, model: "SdfModel") -> None:
@@ -78,6 +78,7 @@ class SdfModel:
 def declare_frames(frames: SdfFrames, parent: Element) -> None:
     """Declare the <frame> elements of a world or model."""
     for frame in parent.children("frame"):
+        frame.mark_all()
         frames.declare(frame.name, frame, frame.attribute("attached_to"))
 
 
@@ -93,6 +94,11 @@ class ModelReader:
         self._model_folders = model_folders
         self._warnings = warnings
         self._files: Dict[Path, Element] = {}
+
+    @property
+    def roots(self) -> Sequence[Element]:
+        """Root elements of the files that have been read."""
+        return list(self._files.values())
 
     def models_in(
         self, parent: Element, folder: Path, static: bool = False, depth: int = 0
@@ -133,8 +139,6 @@ class ModelReader:
         """
         static = static or element.flag("static")
         model = SdfModel(name, element, placed_by, folder, static)
-        if not model.is_driven:
-            self._warnings.check_children(element)
         for nested in self.models_in(element, folder, static, depth):
             model.add(nested)
         return model
@@ -157,10 +161,10 @@ class ModelReader:
         """
         if depth >= MAX_INCLUDE_DEPTH:
             raise include.error("includes itself")
-        self._warnings.check_children(include)
         uri = include.required("uri").text
         builtin = built_in(uri)
         if builtin == SUN:
+            include.mark_all()
             return None
         if builtin == GROUND_PLANE:
             model = parse_text(_GROUND_PLANE_SDF, uri).required("model")
@@ -172,6 +176,7 @@ class ModelReader:
             file = model_file(found)
             folder = file.parent
             model = self._root_of(file).required("model")
+        model.child("pose")  # overridden if the include has one
         name = include.child("name")
         return self.model(
             model,

@@ -19,7 +19,8 @@ from sim_bridge.sdf.models import ModelReader, SdfModel, declare_frames
 from sim_bridge.sdf.shapes.colours import read_colour, read_emissive
 from sim_bridge.sdf.shapes.geometry import MissingMeshError, UnsupportedGeometryError, read_shape
 from sim_bridge.sdf.state import ModelState, read_states
-from sim_bridge.sdf.warnings import SkippedElements
+from sim_bridge.sdf.surfaces import read_damping, read_surface
+from sim_bridge.sdf.warnings import NO_EFFECT, SkippedElements
 from sim_bridge.world import (
     Body,
     Collision,
@@ -33,6 +34,8 @@ from sim_bridge.world import (
 )
 
 DEFAULT_GRAVITY = 9.8
+# Default step of Gazebo's physics [s].
+GAZEBO_STEP = 0.001
 
 
 def load_world(path, model_folders: Sequence[Path] = (), strict: bool = False) -> World:
@@ -48,10 +51,11 @@ def load_world(path, model_folders: Sequence[Path] = (), strict: bool = False) -
         WorldError: The file cannot be read or holds a value that is not valid.
     """
     path = Path(path)
-    world = parse(path).required("world")
-    reader = _SdfReader(tuple(Path(folder) for folder in model_folders), SkippedElements(strict))
+    root = parse(path)
+    world = root.required("world")
+    reader = _SdfReader(root, tuple(Path(folder) for folder in model_folders), SkippedElements(strict))
     reader.read_world(world, path.parent)
-    return reader.world(world.name, _gravity(world))
+    return reader.world(world.name)
 
 
 def read_model(
@@ -62,15 +66,15 @@ def read_model(
     Args:
         xml: The text: a model, or a world that includes one.
         name: Name of the model.
-        pose: Pose (4, 4) in the world.
+        pose: Pose (4, 4) in the world of the frame in which the text places the model.
         model_folders: Folders that are searched for ``model://`` URIs.
         strict: Treat a missing mesh or model as an error.
 
     Raises:
         WorldError: The text cannot be read or holds a value that is not valid.
     """
-    reader = _SdfReader(tuple(model_folders), SkippedElements(strict))
     root = parse_text(xml, name)
+    reader = _SdfReader(root, tuple(model_folders), SkippedElements(strict))
     include = root.child("world", "include")
     if include is not None:
         reader.read_include(include, name, pose)
@@ -82,7 +86,9 @@ def read_model(
 class _SdfReader:
     """Collects bodies, joints, robots, lights, trajectories and warnings."""
 
-    def __init__(self, model_folders: Tuple[Path, ...], warnings: SkippedElements):
+    def __init__(self, root: Element, model_folders: Tuple[Path, ...], warnings: SkippedElements):
+        self._root = root
+        self._gravity_z, self._step = -DEFAULT_GRAVITY, GAZEBO_STEP
         self._bodies: List[Body] = []
         self._joints: List[Joint] = []
         self._robots: List[DrivenModel] = []
@@ -92,12 +98,14 @@ class _SdfReader:
         self._warnings = warnings
         self._models = ModelReader(model_folders, warnings)
 
-    def world(self, name: str, gravity: float = DEFAULT_GRAVITY) -> World:
+    def world(self, name: str) -> World:
         """Return a world of all that has been read."""
+        for root in [self._root, *self._models.roots]:
+            self._warnings.add_unread(root, [robot.element for robot in self._robots])
         return World(
             name,
             tuple(self._bodies),
-            gravity,
+            -self._gravity_z,
             tuple(self._warnings.lines()),
             tuple(self._joints),
             tuple(self._robots),
@@ -107,15 +115,14 @@ class _SdfReader:
 
     def read_world(self, world: Element, folder: Path) -> None:
         """Read a <world>."""
-        self._warnings.check_children(world)
-        for physics in world.children("physics"):
-            self._warnings.check_children(physics)
+        self._gravity_z, self._step = _physics(world, self._warnings)
         self._lights.extend(read_lights(world))
         states = list(world.children("state"))
         insertions = [inserted for state in states for inserted in state.children("insertions")]
-        deleted = [
-            name.text for state in states for part in state.children("deletions") for name in part.children()
-        ]
+        deletions = [part for state in states for part in state.children("deletions")]
+        deleted = [name.text for part in deletions for name in part.children()]
+        for part in deletions:
+            part.mark_all()
         overrides = read_states(states)
         parts = [world, *insertions]
         models = [model for part in parts for model in self._models.models_in(part, folder)]
@@ -124,7 +131,9 @@ class _SdfReader:
         for model in models:
             frames.declare(model.name, model.placed_by, inside=model.placement())
         for model in models:
-            if model.name not in deleted:
+            if model.name in deleted:
+                model.element.mark_all()
+            else:
                 self._add_model(model, frames.frame(model.name, model.element), overrides.get(model.name))
         for actor in world.children("actor"):
             body, trajectory = read_actor(actor, self._warnings)
@@ -132,13 +141,19 @@ class _SdfReader:
             self._trajectories += [trajectory] if trajectory else []
 
     def read_model(self, element: Element, name: str, pose: np.ndarray) -> None:
-        self._add_model(self._models.model(element, element, Path(), name), pose, None)
+        self._add_placed(self._models.model(element, element, Path(), name), pose)
 
     def read_include(self, include: Element, name: str, pose: np.ndarray) -> None:
         model = self._models.included(include, Path())
         if model is not None:
-            model.name = name
-            self._add_model(model, pose, None)
+            model.name, model.placed_by = name, include
+            self._add_placed(model, pose)
+
+    def _add_placed(self, model: SdfModel, pose: np.ndarray) -> None:
+        """Add a model where its <pose> places it in a frame at ``pose``, as gazebo_ros spawns it."""
+        frames = SdfFrames({model.name: model.frames}.get)
+        frames.declare(model.name, model.placed_by, inside=model.placement())
+        self._add_model(model, pose @ frames.frame(model.name, model.element), None)
 
     def _add_model(self, model: SdfModel, in_world: np.ndarray, state: Optional[ModelState]) -> None:
         """Add a model; one with a drive plugin is added as a robot."""
@@ -178,7 +193,10 @@ class _SdfReader:
         for nested in model.nested:
             pose = in_world @ model.frames.frame(nested.name, nested.element)
             self._add_links(nested, pose, state.models.get(nested.name), full_name + "::", outermost)
-        if not model.is_static:
+        if model.is_static:
+            for joint in model.element.children("joint"):
+                joint.mark_all()  # without effect in Gazebo, too
+        else:
             self._add_joints(model, full_name)
 
     def _add_joints(self, model: SdfModel, name: str) -> None:
@@ -208,14 +226,14 @@ class _SdfReader:
         outermost: np.ndarray,
         state: ModelState,
     ) -> Body:
-        if not model.is_driven:
-            self._warnings.check_children(link)
         in_model = model.frames.frame(link.name, link)
         collisions = tuple(self._collisions(link, model, in_model, state))
         visuals = tuple(self._visuals(link, model, in_model, state))
-        fixed = model.is_static or link.flag("kinematic")
+        fixed = link.flag("kinematic") or model.is_static
         fixed = fixed or any(isinstance(part.shape, Plane) for part in collisions)
-        gravity = link.child("gravity")
+        gravity, inertial = link.child("gravity"), link.child("inertial")
+        if fixed and inertial is not None:
+            inertial.mark_all()
         return Body(
             name,
             in_world,
@@ -225,7 +243,7 @@ class _SdfReader:
             inverse(outermost) @ in_world,
             visuals,
             Inertia() if fixed else read_inertia(link, self._warnings),
-            _damping(link),
+            read_damping(link, self._step),
             gravity is None or link.flag("gravity"),
         )
 
@@ -233,7 +251,6 @@ class _SdfReader:
         self, link: Element, model: SdfModel, in_model: np.ndarray, state: ModelState
     ) -> Iterator[Collision]:
         for part in link.children("collision"):
-            self._warnings.check_children(part)
             shape = self._collision_shape(part, model, state)
             if shape is not None:
                 laser_retro = part.number("laser_retro", default=0.0)
@@ -243,7 +260,6 @@ class _SdfReader:
         self, link: Element, model: SdfModel, in_model: np.ndarray, state: ModelState
     ) -> Iterator[Visual]:
         for part in link.children("visual"):
-            self._warnings.check_children(part)
             shape = self._visual_shape(part, model, state)
             if shape is not None:
                 placed = _pose_in_link(part, link, model, in_model)
@@ -268,14 +284,29 @@ class _SdfReader:
         return load_mesh(shape) if isinstance(shape, MeshFile) else cast(Optional[Shape], shape)
 
     def _surface(self, link: Element) -> SurfaceProperties:
-        """Return the surface of a link's first collision; friction is clipped to 1 (many worlds have 100)."""
-        surface = link.child("collision", "surface")
-        if surface is None:
-            return SurfaceProperties()
-        self._warnings.check_children(surface)
-        mu = surface.number("friction", "ode", "mu", default=1.0)
-        bounce = surface.number("bounce", "restitution_coefficient", default=0.0)
-        return SurfaceProperties(min(max(mu, 0.0), 1.0), min(max(bounce, 0.0), 1.0))
+        """Return the surface of a link's first collision, which counts for the whole link."""
+        collisions = list(link.children("collision"))
+        surfaces = [read_surface(collision, self._warnings) for collision in collisions]
+        for collision, surface in zip(collisions, surfaces):
+            element = collision.child("surface")
+            if element is not None and surface != surfaces[0]:
+                self._warnings.skip(element, f"{NO_EFFECT}: the surface of the link's first collision counts")
+        return surfaces[0] if surfaces else SurfaceProperties()
+
+
+def _physics(world: Element, warnings: SkippedElements) -> Tuple[float, float]:
+    """Return gravity along z [m/s^2] and the step of physics [s] of a <world>."""
+    step = GAZEBO_STEP
+    for physics in world.children("physics"):
+        step = physics.number("max_step_size", default=GAZEBO_STEP)
+    gravity, of_physics = world.child("gravity"), world.child("physics", "gravity")
+    gravity = gravity or of_physics
+    if gravity is None:
+        return -DEFAULT_GRAVITY, step
+    x, y, z = gravity.numbers(3)
+    if x or y:
+        warnings.skip(gravity, "only its z acts")
+    return z, step
 
 
 def _links_of(model: SdfModel, scope: str = "") -> List[Tuple[str, np.ndarray]]:
@@ -291,15 +322,3 @@ def _links_of(model: SdfModel, scope: str = "") -> List[Tuple[str, np.ndarray]]:
 
 def _pose_in_link(part: Element, link: Element, model: SdfModel, link_in_model: np.ndarray) -> np.ndarray:
     return inverse(link_in_model) @ model.frames.pose_of(part, link.name)
-
-
-def _damping(link: Element) -> Tuple[float, float]:
-    return (
-        link.number("velocity_decay", "linear", default=0.0),
-        link.number("velocity_decay", "angular", default=0.0),
-    )
-
-
-def _gravity(world: Element) -> float:
-    gravity = world.child("gravity") or world.child("physics", "gravity")
-    return -gravity.numbers(3)[2] if gravity is not None else DEFAULT_GRAVITY

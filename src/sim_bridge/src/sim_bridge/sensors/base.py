@@ -98,6 +98,20 @@ class SensorContext(Protocol):
             Segments (N, 4) as x, y, x, y in the world [m], and the laser_retro (N,) of each.
         """
 
+    def cast_rays(
+        self, origin: np.ndarray, directions: np.ndarray, max_range: float
+    ) -> Tuple[np.ndarray, np.ndarray]:
+        """Cast rays at all but the robot.
+
+        Args:
+            origin: Start (3,) of the rays in the world [m].
+            directions: Unit vectors (N, 3) in the world.
+            max_range: Largest range [m].
+
+        Returns:
+            The length (N,) of each ray, infinite without a hit [m], and the laser_retro (N,) of what it hits.
+        """
+
     def triangles(self) -> Tuple[np.ndarray, np.ndarray]:
         """Return the surfaces of all but the robot.
 

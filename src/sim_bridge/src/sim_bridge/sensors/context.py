@@ -61,7 +61,7 @@ class RobotSensorContext:
     @property
     def twist(self) -> Twist2:
         if self._twist is None:
-            self._twist = twist_in_base(self.base)
+            self._twist = twist_in_base(self.base, self._vehicle.is_omnidirectional)
         return self._twist
 
     @property
@@ -79,6 +79,13 @@ class RobotSensorContext:
 
     def section(self, height: float) -> Tuple[np.ndarray, np.ndarray]:
         return self._view.section(self._vehicle.name, height)
+
+    def cast_rays(
+        self, origin: np.ndarray, directions: np.ndarray, max_range: float
+    ) -> Tuple[np.ndarray, np.ndarray]:
+        lengths, links = self._vehicle.cast_rays(origin, directions, max_range)
+        retros = {link: self._view.laser_retro(link) for link in set(links)}
+        return lengths, np.array([retros[link] for link in links])
 
     def triangles(self) -> Tuple[np.ndarray, np.ndarray]:
         return self._view.triangles(self._vehicle.name)

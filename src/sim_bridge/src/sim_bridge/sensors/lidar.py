@@ -1,8 +1,8 @@
-"""Planar range finder (Probabilistic Robotics, section 6.3, p_hit and p_max)."""
+"""Range finder (Probabilistic Robotics, section 6.3, p_hit and p_max)."""
 
 import math
 from dataclasses import dataclass, replace
-from typing import Optional
+from typing import Optional, Tuple
 
 import numpy as np
 
@@ -11,9 +11,11 @@ from planar.geometry.limits import MAX_BEAMS
 from sim_bridge.config import SimulationSettings
 from sim_bridge.geometry.pose3 import to_pose2
 from sim_bridge.noise import NoiseSettings
+from sim_bridge.sdf.element import Element
 from sim_bridge.sdf.values import text
 from sim_bridge.sensors.base import Mounting, Schedule, SensorContext
 from sim_bridge.sensors.element import SensorElement
+from sim_bridge.sensors.rays import RayGrid, cast_in_space, is_level
 from sim_bridge.views.section import cast_beams
 
 STREAM = 1
@@ -21,13 +23,13 @@ STREAM = 1
 
 @dataclass(frozen=True, eq=False)
 class LaserProfile:
-    """Settings of a planar range finder.
+    """Settings of a range finder.
 
     Attributes:
         frame: Frame of its scans.
         topic: Topic of its scans.
         pose_in_base: Pose (4, 4) in the base frame.
-        beams: Number of beams.
+        beams: Number of ranges of a row.
         angle_min: Bearing of the first beam in ``frame`` [rad].
         angle_increment: Angle between two beams [rad].
         range_min: Published range_min [m].
@@ -36,6 +38,8 @@ class LaserProfile:
         no_return: Reading of a beam that hits nothing within ``sight`` (REP 117) [m].
         too_near: Reading of a beam that hits an obstacle nearer than ``range_min`` (REP 117) [m].
         scan_time: Published scan_time [s].
+        grid: Rays, if they are not the ``beams`` of one level row.
+        noise_mean: Mean error of a range [m].
         rate: Rate of the scans [Hz]; None for that of the simulation.
         noise: Standard deviation of a range [m]; None for that of the simulation.
     """
@@ -54,6 +58,8 @@ class LaserProfile:
     scan_time: float = 0.0
     rate: Optional[float] = None
     noise: Optional[float] = None
+    grid: Optional[RayGrid] = None
+    noise_mean: float = 0.0
 
     def build(self, mounting: Mounting) -> "Lidar":
         noise = mounting.settings
@@ -63,9 +69,9 @@ class LaserProfile:
 
 
 class Lidar:
-    """Measures ranges in a horizontal cross-section of the world.
+    """Measures ranges: if it is mounted level, in a horizontal cross-section of the world, else in space.
 
-    Its beams stay horizontal: on a floor the robot tilts by less than a fifth of a degree.
+    Beams of a level laser stay horizontal: on a floor the robot tilts by less than a fifth of a degree.
 
     Args:
         profile: Geometry and limits.
@@ -87,12 +93,20 @@ class Lidar:
         self._noise = noise
         self._rng = rng
         self._retros, self._has_retros = np.empty(0), False
+        self._grid = profile.grid or _level_row(profile)
+        self._directions = np.empty((0, 3))
+        if not (self._grid.is_one_level_row and is_level(profile.pose_in_base)):
+            self._directions = self._grid.directions()
 
     def schedule(self, settings: SimulationSettings) -> Schedule:
         rate = self._profile.rate or settings.scan_rate
         return Schedule(max(round(settings.physics_rate / rate), 1))
 
     def measure(self, context: SensorContext) -> Scan:
+        if len(self._directions):
+            pose = self._profile.pose_in_base
+            lengths, retros = cast_in_space(context, pose, self._directions, self._profile.sight)
+            return self._scan(context.stamp, lengths, retros)
         return self.sweep(context.stamp, *context.section(self._height), context.base.pose2)
 
     def sweep(self, stamp: float, segments: np.ndarray, retros: np.ndarray, base_in_world: Pose2) -> Scan:
@@ -108,22 +122,39 @@ class Lidar:
             The scan, with noise.
         """
         profile = self._profile
-        laser = base_in_world @ self._laser_in_base
-        first = profile.angle_min
-        if self._is_upside_down:  # beams are in reverse order
-            first = -profile.angle_min - profile.angle_increment * (profile.beams - 1)
-        true_ranges, nearest = cast_beams(
+        laser, grid = base_in_world @ self._laser_in_base, self._grid
+        # Beams of a laser that is upside down are in reverse order.
+        first = -grid.angle_max if self._is_upside_down else grid.angle_min
+        lengths, nearest = cast_beams(
             segments,
             laser.x,
             laser.y,
             laser.yaw + first,
-            profile.angle_increment,
-            profile.beams,
+            profile.angle_increment if profile.grid is None else grid.increment,
+            grid.columns,
             profile.sight,
         )
         if self._is_upside_down:
-            true_ranges, nearest = true_ranges[::-1], nearest[::-1]
-        ranges = self._noisy(true_ranges)
+            lengths, nearest = lengths[::-1], nearest[::-1]
+        if retros is not self._retros:  # the section has changed
+            self._retros, self._has_retros = retros, bool(retros.any())
+        hit = np.append(retros, 0.0)[nearest] if self._has_retros else np.empty(0)
+        return self._scan(stamp, lengths, hit)
+
+    def _scan(self, stamp: float, lengths: np.ndarray, retros: np.ndarray) -> Scan:
+        """Return a scan, with noise.
+
+        Args:
+            stamp: Time of the scan [simulated s].
+            lengths: True length (R,) of each ray, infinite without a hit [m].
+            retros: laser_retro (R,) of what the rays hit; empty if nothing has any.
+        """
+        profile = self._profile
+        ranges = self._noisy(self._grid.interpolate(lengths, profile.sight))
+        intensities = np.zeros(len(ranges), dtype=np.float32)
+        if len(retros):
+            seen = np.isfinite(ranges)
+            intensities[seen] = self._grid.nearest(retros)[seen]
         return Scan(
             stamp=stamp,
             angle_min=profile.angle_min,
@@ -133,7 +164,7 @@ class Lidar:
             range_max=profile.range_max,
             laser_in_base=self._laser_in_base,
             upside_down=self._is_upside_down,
-            intensities=self._intensities(retros, nearest, ranges),
+            intensities=intensities,
         )
 
     def _noisy(self, true_ranges: np.ndarray) -> np.ndarray:
@@ -143,7 +174,7 @@ class Lidar:
         profile, noise, count = self._profile, self._noise, len(true_ranges)
         fail = (noise.range_dropouts, noise.range_max_readings)
         return measure_ranges(
-            true_ranges,
+            true_ranges + profile.noise_mean if profile.noise_mean else true_ranges,
             noise.range_noise,
             self._rng.standard_normal(count),
             self._rng.random(count) if sum(fail) > 0.0 else np.empty(0),
@@ -154,14 +185,6 @@ class Lidar:
             profile.sight,
             profile.range_max,
         )
-
-    def _intensities(self, retros: np.ndarray, nearest: np.ndarray, ranges: np.ndarray) -> np.ndarray:
-        """Return the intensity of each beam, float32 (N,); 0 in worlds without laser_retro."""
-        if retros is not self._retros:  # the section has changed
-            self._retros, self._has_retros = retros, bool(retros.any())
-        if not self._has_retros:
-            return np.zeros(len(ranges), dtype=np.float32)
-        return np.where(np.isfinite(ranges), np.append(retros, 0.0)[nearest], 0.0).astype(np.float32)
 
 
 def read_laser(element: SensorElement) -> LaserProfile:
@@ -174,12 +197,20 @@ def read_laser(element: SensorElement) -> LaserProfile:
     ray = sensor.child("ray") or sensor.required("lidar")
     horizontal = ray.required("scan").required("horizontal")
     horizontal.required("samples")
-    beams = horizontal.count("samples", most=MAX_BEAMS, default=0)
-    first, last = (horizontal.required(f"{end}_angle").numbers(1)[0] for end in ("min", "max"))
+    rays, first, last, beams = _sweep(horizontal)
     span = ray.required("range")
     nearest, farthest = span.required("min").numbers(1)[0], span.required("max").lengths(1)[0]
-    if beams < 2 or last <= first or not 0.0 <= nearest < farthest:
-        raise sensor.error("a range finder needs two samples, min_angle < max_angle and 0 <= min < max range")
+    if not 0.0 <= nearest < farthest:
+        raise sensor.error(f"expected 0 <= min < max range, got {nearest:g} and {farthest:g}")
+    vertical = ray.child("scan", "vertical")
+    elevations, rows = (0.0,), 1
+    if vertical is not None:
+        count, low, high, rows = _sweep(vertical)
+        # As in Gazebo: a single row has no elevation.
+        elevations = tuple(np.linspace(low, high, count).tolist()) if count > 1 else (0.0,)
+    if max(rays * len(elevations), beams * rows) > MAX_BEAMS:
+        raise sensor.error(f"expected at most {MAX_BEAMS} rays, got {rays * len(elevations)}")
+    is_level_row = (rays, elevations, rows) == (beams, (0.0,), 1) and beams > 1
     deviation = ray.child("noise", "stddev")
     return LaserProfile(
         frame=text(element.plugin, "frameName", element.link),
@@ -187,10 +218,37 @@ def read_laser(element: SensorElement) -> LaserProfile:
         pose_in_base=element.pose_in_base,
         beams=beams,
         angle_min=first,
-        angle_increment=(last - first) / (beams - 1),
+        angle_increment=(last - first) / max(beams - 1, 1),
         range_min=nearest,
         range_max=farthest,
         sight=farthest,
         rate=element.update_rate,
         noise=deviation.numbers(1)[0] if deviation is not None else None,
+        grid=None if is_level_row else RayGrid(first, last, rays, elevations, beams, rows),
+        noise_mean=ray.number("noise", "mean", default=0.0),
     )
+
+
+def _level_row(profile: LaserProfile) -> RayGrid:
+    """Return the rays of a profile without a grid."""
+    angle_max = profile.angle_min + profile.angle_increment * (profile.beams - 1)
+    return RayGrid(profile.angle_min, angle_max, profile.beams, (0.0,), profile.beams, 1)
+
+
+def _sweep(scan: Element) -> Tuple[int, float, float, int]:
+    """Read <horizontal> or <vertical>.
+
+    Returns:
+        Number of rays, first and last angle [rad], and number of ranges: rays times resolution.
+
+    Raises:
+        WorldError: A value is not valid.
+    """
+    rays = scan.count("samples", most=MAX_BEAMS, default=1)
+    first, last = (scan.required(f"{end}_angle").numbers(1)[0] for end in ("min", "max"))
+    if last < first or (last == first and rays > 1):
+        raise scan.error(f"expected min_angle < max_angle for {rays} samples, got {first:g} and {last:g}")
+    ranges = int(rays * scan.number("resolution", default=1.0))
+    if not 1 <= ranges <= MAX_BEAMS:
+        raise scan.error(f"expected 1 to {MAX_BEAMS} ranges (samples * resolution), got {ranges}")
+    return rays, first, last, ranges

@@ -85,6 +85,11 @@ class SceneView:
                     section.add(body)
         return section.segments(self._pose_of), section.retros()
 
+    def laser_retro(self, link: str) -> float:
+        """Return the largest laser_retro of a body's collisions; 0 for the name of no body."""
+        parts = self._bodies[link].collisions if link in self._bodies else ()
+        return max((part.laser_retro for part in parts), default=0.0)
+
     def triangles(self, viewer: str = "") -> Tuple[np.ndarray, np.ndarray]:
         """Return the surfaces that a camera can see.
 

@@ -107,7 +107,7 @@ class ReceivedCommand(Twist2):
             PlanarError: The velocity is invalid.
         """
         twist = twist2_from_msg(message)
-        return cls(twist.v, twist.omega, message)
+        return cls(twist.v, twist.omega, message=message)
 
     def to_msg(self, changed: Twist2) -> Any:
         """Return the message to publish.

@@ -26,15 +26,22 @@ class GazeboInterface:
         time_control: Pauses, steps and resets simulated time.
         calls: Queue of the thread that owns the scene.
         model_folders: Folders of the models that spawned ones include.
+        strict: Refuse models with content that has no effect.
     """
 
     def __init__(
-        self, scene: Scene, robots: RobotManager, time_control: TimeControl, calls: CallQueue, model_folders
+        self,
+        scene: Scene,
+        robots: RobotManager,
+        time_control: TimeControl,
+        calls: CallQueue,
+        model_folders,
+        strict: bool = False,
     ):
         server = GazeboServer(calls)
         self._states = StateServices(scene, server)
         PhysicsServices(scene, time_control, server)
-        SpawnServices(scene, robots, server, model_folders)
+        SpawnServices(scene, robots, server, model_folders, strict)
         PropertyServices(scene, server)
         JointServices(scene, server)
         ForceServices(scene, server)

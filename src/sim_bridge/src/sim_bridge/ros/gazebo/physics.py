@@ -1,5 +1,6 @@
 """Services for time, gravity and the world as a whole."""
 
+from copy import deepcopy
 from typing import Any, Dict
 
 import gazebo_msgs.srv as srv
@@ -18,7 +19,16 @@ from sim_bridge.ros.gazebo.server import NAMESPACE, GazeboServer
 from sim_bridge.ros.timing.time_control import TimeControl
 from sim_bridge.scene import Scene
 
-# Dynamic parameters (Physics.cfg of gazebo_ros) without those of ODE.
+# Gazebo's defaults of ODE's settings, which have no effect here.
+ODE = ODEPhysics(
+    sor_pgs_iters=50,
+    sor_pgs_w=1.3,
+    contact_surface_layer=0.001,
+    contact_max_correcting_vel=100.0,
+    erp=0.2,
+    max_contacts=20,
+)
+# Dynamic parameters (Physics.cfg of gazebo_ros).
 TUNABLES = (
     DynamicParameter("time_step", 0.005, "s of simulated time in a step of physics", 0.0, 10.0),
     DynamicParameter(
@@ -28,6 +38,10 @@ TUNABLES = (
         DynamicParameter(f"gravity_{axis}", 0.0, f"gravity along {axis}, m/s^2", -100.0, 100.0)
         for axis in "xyz"
     ),
+    *(
+        DynamicParameter(name, getattr(ODE, name), "setting of ODE, without effect")
+        for name in ODEPhysics.__slots__
+    ),
 )
 
 
@@ -35,6 +49,7 @@ class PhysicsServices:
     def __init__(self, scene: Scene, time_control: TimeControl, server: GazeboServer):
         self._scene = scene
         self._time = time_control
+        self._ode = deepcopy(ODE)
         for name, do in (
             ("pause_physics", time_control.pause),
             ("unpause_physics", time_control.unpause),
@@ -64,7 +79,7 @@ class PhysicsServices:
             pause=self._time.is_paused,
             max_update_rate=values["max_update_rate"],
             gravity=Vector3(*(values[f"gravity_{axis}"] for axis in "xyz")),
-            ode_config=ODEPhysics(),
+            ode_config=self._ode,
             success=True,
             status_message="GetPhysicsProperties: got properties",
         )
@@ -72,6 +87,7 @@ class PhysicsServices:
     def _on_set_physics(self, request):
         try:
             self._set(request.time_step, request.max_update_rate, request.gravity)
+            self._set_ode({name: getattr(request.ode_config, name) for name in ODEPhysics.__slots__})
         except PlanarError as error:
             return srv.SetPhysicsPropertiesResponse(False, f"SetPhysicsProperties: {error}")
         return srv.SetPhysicsPropertiesResponse(True, "physics engine updated")
@@ -83,6 +99,7 @@ class PhysicsServices:
         def change():
             try:
                 self._set(values["time_step"], values["max_update_rate"], gravity)
+                self._set_ode({name: values[name] for name in ODEPhysics.__slots__})
             except PlanarError as error:
                 rospy.logerr("%sset_parameters: %s", NAMESPACE, error)
             return self._values()
@@ -100,7 +117,14 @@ class PhysicsServices:
         self._scene.set_gravity(-gravity.z)
         self._time.set_speed(max_update_rate * time_step)
 
-    def _values(self) -> Dict[str, float]:
+    def _set_ode(self, values: Dict[str, Any]) -> None:
+        """Keep settings of ODE for ``get_physics_properties``, and log those that change."""
+        for name, value in values.items():
+            if value != getattr(self._ode, name):
+                rospy.logwarn("%sset_physics_properties: %s has no effect: there is no ODE", NAMESPACE, name)
+                setattr(self._ode, name, value)
+
+    def _values(self) -> Dict[str, Any]:
         rate = self._scene.settings.physics_rate
         return {
             "time_step": 1.0 / rate,
@@ -108,4 +132,5 @@ class PhysicsServices:
             "gravity_x": 0.0,
             "gravity_y": 0.0,
             "gravity_z": -self._scene.gravity,
+            **{name: getattr(self._ode, name) for name in ODEPhysics.__slots__},
         }

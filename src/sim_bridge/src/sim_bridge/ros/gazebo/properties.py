@@ -32,7 +32,7 @@ class PropertyServices:
             canonical_body_name=links[0],
             body_names=[link for link in links if "::" not in link],
             geom_names=scene.models.collisions_of(model),
-            joint_names=[_inside(model, joint) for joint in scene.joints.movable_joints_of(model)],
+            joint_names=[_inside(model, joint) for joint in scene.joints.joints_of(model)],
             child_model_names=sorted({link.split("::", 1)[0] for link in links if "::" in link}),
             is_static=scene.models.is_static(model),
             success=True,

@@ -1,5 +1,6 @@
 """Services that spawn and delete models and robots."""
 
+from dataclasses import replace
 from functools import partial
 from typing import Callable, Dict, List
 
@@ -16,10 +17,15 @@ from sim_bridge.physics.kinematics import KinematicState
 from sim_bridge.ros.description import find_file
 from sim_bridge.ros.gazebo.server import SCOPE_HINT, GazeboServer, frame_named
 from sim_bridge.ros.messages import pose3_from_msg, pose3_to_msg
+from sim_bridge.ros.notices import log_warnings
 from sim_bridge.ros.robot_manager import RobotManager
 from sim_bridge.scene import Scene
 from sim_bridge.sdf import read_model
-from sim_bridge.world import World
+from sim_bridge.sdf.element import parse_text
+from sim_bridge.sdf.lights import read_light
+from sim_bridge.world import Light, World
+
+ALREADY_EXISTS = "SpawnModel: Failure - entity already exists."
 
 
 class SpawnRefusedError(PlanarError):
@@ -41,13 +47,14 @@ class SpawnServices:
         robots: Spawned robots are added to it.
         server: Advertises the services.
         model_folders: Folders of the models that spawned ones include.
+        strict: Refuse models with content that has no effect.
     """
 
-    def __init__(self, scene: Scene, robots: RobotManager, server: GazeboServer, model_folders):
+    def __init__(self, scene: Scene, robots: RobotManager, server: GazeboServer, model_folders, strict: bool):
         self._scene, self._robots, self._server = scene, robots, server
-        self._model_folders = model_folders
+        self._model_folders, self._strict = model_folders, strict
         self._spawned = SpawnedModelsPublisher()
-        server.serve_in_thread("spawn_sdf_model", srv.SpawnModel, partial(self._on_spawn, self._read_sdf))
+        server.serve_in_thread("spawn_sdf_model", srv.SpawnModel, partial(self._on_spawn, self._read))
         server.serve_in_thread("spawn_urdf_model", srv.SpawnModel, partial(self._on_spawn, self._read_urdf))
         server.serve("delete_model", srv.DeleteModel, self._on_delete)
 
@@ -71,16 +78,28 @@ class SpawnServices:
 
     def _check_name(self, request) -> None:
         if request.model_name in self._scene.models.names():
-            raise SpawnRefusedError("SpawnModel: Failure - entity already exists.")
+            raise SpawnRefusedError(ALREADY_EXISTS)
 
     def _put_in(self, request, insertions: Insertions) -> None:
         self._check_name(request)
         for insert in insertions:
             insert()
 
-    def _read_sdf(self, request, pose: np.ndarray) -> Insertions:
-        model = read_model(request.model_xml, request.model_name, pose, self._model_folders)
+    def _read(self, request, pose: np.ndarray) -> Insertions:
+        """Read SDF, or URDF, which Gazebo accepts here, too."""
+        root = parse_text(request.model_xml, request.model_name, ("sdf", "gazebo", "robot"))
+        if root.tag == "robot":
+            return self._read_urdf(request, pose)
+        light = root.child("light")
+        if light is not None and root.child("model") is None:
+            return [partial(self._add_light, replace(read_light(light), name=request.model_name))]
+        model = read_model(request.model_xml, request.model_name, pose, self._model_folders, self._strict)
         return self._insertions(request, model, pose)
+
+    def _add_light(self, light: Light) -> None:
+        if light.name in self._scene.lights:
+            raise SpawnRefusedError(ALREADY_EXISTS)
+        self._scene.lights[light.name] = light
 
     def _read_urdf(self, request, pose: np.ndarray) -> Insertions:
         try:
@@ -88,14 +107,16 @@ class SpawnServices:
         except NoDriveError:
             prop = read_prop(request.model_xml, request.model_name, pose, find_file)
             return self._insertions(request, prop, pose)
+        log_warnings(robot.warnings, self._strict)
         return [partial(self._add_robot, request, robot, pose)]
 
     def _insertions(self, request, model: World, pose: np.ndarray) -> Insertions:
         if not (model.bodies or model.robots):
             raise WorldError("; ".join([f"{request.model_name} has no links", *model.warnings]))
-        for warning in model.warnings:
-            rospy.logwarn("%s", warning)
-        robots = [partial(self._add_robot, request, *read_sdf_robot(robot)) for robot in model.robots]
+        driven = [read_sdf_robot(robot) for robot in model.robots]
+        warnings = [text for profile, _ in driven for text in profile.warnings]
+        log_warnings([*model.warnings, *warnings], self._strict)
+        robots = [partial(self._add_robot, request, *robot) for robot in driven]
         insertions: Insertions = [partial(self._scene.add, model.bodies, model.joints), *robots]
         if model.bodies:
             insertions.append(partial(self._spawned.add, request.model_name, request.model_xml, pose))

@@ -49,13 +49,13 @@ class StateServices:
 
     def _on_get_model(self, request):
         response = srv.GetModelStateResponse()
-        response.header.stamp = rospy.Time.from_sec(self._scene.stamp)
-        response.header.frame_id = request.relative_entity_name
         try:
             motion = self._scene.models.state(request.model_name)
         except UnknownEntityError:
             response.status_message = "GetModelState: model does not exist"
             return response
+        response.header.stamp = rospy.Time.from_sec(self._scene.stamp)
+        response.header.frame_id = request.relative_entity_name
         self._request_counts[request.model_name] += 1
         response.header.seq = self._request_counts[request.model_name]
         frame = frame_named(self._scene, request.relative_entity_name)
@@ -71,8 +71,6 @@ class StateServices:
 
     def _on_get_link(self, request):
         response = srv.GetLinkStateResponse()
-        response.link_state.link_name = request.link_name
-        response.link_state.reference_frame = request.reference_frame
         try:
             motion = self._scene.models.link_state(self._scene.models.full_link_name(request.link_name))
         except UnknownEntityError:
@@ -82,6 +80,8 @@ class StateServices:
         if frame is None:
             response.status_message = f"GetLinkState: reference reference_frame not found, {SCOPE_HINT}"
             return response
+        response.link_state.link_name = request.link_name
+        response.link_state.reference_frame = request.reference_frame
         response.link_state.pose, response.link_state.twist = state_to_msgs(relative(motion, frame))
         response.success, response.status_message = True, "GetLinkState: got state"
         return response

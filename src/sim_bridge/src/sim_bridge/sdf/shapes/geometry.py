@@ -46,9 +46,10 @@ def read_shape(geometry: Element, folder: Path, model_folders: Sequence[Path]) -
     """
     if geometry.child("empty") is not None:
         return None
-    kind = next((child for child in geometry.children() if child.tag in _READERS), None)
-    if kind is not None:
-        return _READERS[kind.tag](kind)
+    for tag, read in _READERS.items():
+        primitive = geometry.child(tag)
+        if primitive is not None:
+            return read(primitive)
     mesh = geometry.child("mesh")
     if mesh is not None:
         return _find_mesh(mesh, folder, model_folders)
