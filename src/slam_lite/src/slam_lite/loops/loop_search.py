@@ -11,8 +11,9 @@ from slam_lite.graph.pose_graph import Edge, relative_pose
 from slam_lite.loops.degeneracy import constraint_at_peak, refine_at
 from slam_lite.loops.loop_candidates import LoopCandidate
 from slam_lite.loops.loop_closure import LoopClosure
+from slam_lite.loops.match_likelihood import log_likelihood_ratio
 from slam_lite.loops.static_points import static_points
-from slam_lite.loops.visibility import PosedCloud, visibility_conflict
+from slam_lite.loops.visibility import PosedCloud
 from slam_lite.matching.correlative import search_branch_and_bound
 from slam_lite.matching.local_map import LocalMap, Match
 from slam_lite.point_cloud import PointCloud, downsampled
@@ -20,8 +21,8 @@ from slam_lite.point_cloud import PointCloud, downsampled
 # Keyframes of the place, to each side, and their distance from it [m], that are merged for a match in a small
 # window.
 _PLACE_KEYFRAMES, _PLACE_RADIUS = 20, 6.0
-# Fraction of the walls that may be seen through at an ambiguous candidate, as people may have left since.
-_MAX_VISIBILITY_CONFLICT = 0.025
+# Least log likelihood ratio of a match at an ambiguous candidate.
+_MIN_LIKELIHOOD = 1.0
 _MIN_POINTS, _MAX_POINTS = 50, 500
 
 
@@ -61,15 +62,15 @@ def find_loop_closure(
         return None
 
     def match_at(start: Pose2) -> Optional[Match]:
-        match = refine_at(start, recent_cloud, local_map, settings.closure_min_response)
-        if match is None or not candidate.is_ambiguous:
-            return match
-        conflict = visibility_conflict(place_clouds, recent_clouds, match.base_pose)
-        return match if conflict <= _MAX_VISIBILITY_CONFLICT else None
+        return refine_at(start, recent_cloud, local_map, settings.closure_min_response)
 
     constraint = constraint_at_peak(peak, candidate.guess, recent_cloud, local_map, match_at)
     if constraint is None:
         return None
+    if candidate.is_ambiguous:
+        evidence = place_clouds, recent_clouds, constraint.base_in_place, constraint.response
+        if log_likelihood_ratio(*evidence, local_map) < _MIN_LIKELIHOOD:
+            return None
     edge = Edge(place, recent, constraint.base_in_place, constraint.information, is_loop=True)
     return LoopClosure(edge, candidate, constraint.degenerate_direction)
 

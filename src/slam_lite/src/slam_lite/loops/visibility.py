@@ -39,6 +39,15 @@ def seen_through_fraction(walls: PointCloud, scans: Iterable[PosedCloud]) -> flo
     return through / max(through + hit, 1)
 
 
+def merged_walls(scans: Sequence[PosedCloud]) -> PointCloud:
+    """Return the points of scans that are checked, in their common frame.
+
+    Args:
+        scans: Points of each scan, with the pose of its base in a common frame.
+    """
+    return downsampled(merge_clouds(scans), _MAX_POINTS)
+
+
 def visibility_conflict(
     place: Sequence[PosedCloud], recent: Sequence[PosedCloud], recent_in_place: Pose2
 ) -> float:
@@ -54,7 +63,7 @@ def visibility_conflict(
     """
     recent = [(cloud, recent_in_place @ pose) for cloud, pose in recent]
     return max(
-        seen_through_fraction(downsampled(merge_clouds(walls), _MAX_POINTS), scans[::_SCAN_STEP])
+        seen_through_fraction(merged_walls(walls), scans[::_SCAN_STEP])
         for walls, scans in ((place, recent), (recent, place))
     )
 
