@@ -22,7 +22,7 @@ from helpers.bags import START
 from helpers.command_line import seeds
 from helpers.drives import Observation
 from slam import relation_errors
-from slam_logs import DRIVES, relations_of, simulate
+from slam_logs import DRAWN, DRIVES, relations_of, simulate
 
 from planar import wrap
 from planar_ros.node.entry import use_one_blas_thread
@@ -177,7 +177,7 @@ def _line(one: Closures) -> str:
 
 def _options() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("log", choices=[*DRIVES, "site"], help="which logs")
+    parser.add_argument("log", choices=[*DRIVES, *DRAWN], help="which logs")
     parser.add_argument("--seeds", type=seeds, default=range(1), help="such as 100-109 (default: 0)")
     parser.add_argument("--json", type=Path, help="write the figures here")
     return parser.parse_args()

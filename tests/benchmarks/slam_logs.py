@@ -14,13 +14,14 @@ Seeds below 100 are for choosing settings, from 100 on for evaluation.
 import argparse
 import math
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Dict, Iterator, List, Optional, Tuple, Union
 
 import numpy as np
 from helpers.bags import START, write_bag
 from helpers.drives import Observation
+from helpers.gardens import Garden
 from helpers.sites import Building, Campus, House
 
 from planar import OccupancyGrid, Pose2, Scan, wrap
@@ -35,6 +36,11 @@ PERSON_RADIUS, PERSON_SPEED, PERSON_RANGES, PERSON_SCANS, PERSON_ODDS = 0.25, 1.
 SLIP_DISTANCE, SLIP_TURN = 0.3, 0.15
 RELATION_STEP, REVISIT_RADIUS, REVISIT_SECONDS = 1.0, 2.0, 60.0
 SITE_SIZE, SITE_SLOTS = (500.0, 300.0), (3, 2)
+# A site with hedges, and largest turn between two of its scans [rad], as in logs of key scans.
+GARDEN_SIZE, GARDEN_SLOTS, MAX_TURN = (260.0, 180.0), (2, 2), 0.5
+# Pauses of the recording: number, duration [s], and how many scans of the drive are missing in each.
+PAUSES, PAUSE_SECONDS, PAUSE_SCANS = 3, (60.0, 240.0), (1, 6)
+CART_RADIUS, CART_SHARE = 0.5, 0.3
 
 
 @dataclass(frozen=True)
@@ -50,6 +56,9 @@ class Drive:
         max_range: Range beyond which the laser has no return [m].
         people: Number of people who walk by.
         slip_distance: Mean distance between wheel slips [m].
+        beams: Number of beams of the laser.
+        has_garden: Whether hedges, poles, cars that move and pauses are added, and some people push carts.
+        random_error: Random errors of odometry, as a multiple of those of the other drives.
     """
 
     buildings: Tuple[Building, ...]
@@ -60,6 +69,9 @@ class Drive:
     max_range: float = 30.0
     people: int = 1
     slip_distance: float = math.inf
+    beams: int = BEAMS
+    has_garden: bool = False
+    random_error: float = 1.0
 
     @property
     def is_campus(self) -> bool:
@@ -96,10 +108,50 @@ def site_drive(rng: np.random.Generator) -> Drive:
     )
 
 
+def garden_drive(rng: np.random.Generator) -> Drive:
+    """A drive of some 1.5 km past hedges, fences, glass, poles and people, between two to four buildings.
+
+    Odometry is as good as that of real robots or worse, the beams are as many as those of common lasers.
+    """
+    buildings = [
+        Building(
+            int(rng.integers(1, 3)),
+            int(rng.integers(1, 3)),
+            (rng.uniform(20.0, 28.0), rng.uniform(12.0, 18.0)),
+            (rng.uniform(3.0, 5.0), rng.uniform(5.0, 9.0)),
+            rng.uniform(0.0, 0.15),
+        )
+        for _ in range(rng.integers(2, 5))
+    ]
+    is_good = rng.random() < 0.6
+    turn_error, distance_error = (0.01, 0.001) if is_good else (rng.uniform(0.02, 0.06), 0.004)
+    return Drive(
+        tuple(buildings),
+        6000,
+        turn_error,
+        distance_error,
+        period=float(rng.choice([0.8, 1.4])),
+        max_range=float(rng.choice([30.0, 80.0])),
+        people=int(rng.integers(3, 10)),
+        slip_distance=math.inf if is_good else 300.0,
+        beams=int(rng.choice([180, 361])),
+        has_garden=True,
+        random_error=0.4 if is_good else 1.0,
+    )
+
+
+DRAWN = {"site": site_drive, "hedges": garden_drive}
+
+
 def simulate(name: str, seed: int) -> Tuple[OccupancyGrid, Drive, List[Observation]]:
     """Return the true grid, the drive and the observations of a log; each seed is another "site"."""
     rng = np.random.default_rng([seed, len(name)])
-    drive = DRIVES[name] if name in DRIVES else site_drive(rng)
+    drive = DRIVES[name] if name in DRIVES else DRAWN[name](rng)
+    if drive.has_garden:
+        campus = Campus(drive.buildings, GARDEN_SLOTS, GARDEN_SIZE, rng)
+        poses = true_poses(campus.walk(rng, again=8), drive, rng)
+        observations = list(observations_of(Garden(campus, rng), poses, drive, rng))
+        return campus.grid, drive, with_pauses(observations, rng)
     site: Union[Campus, House]
     if drive.is_campus:
         site = Campus(drive.buildings, SITE_SLOTS, SITE_SIZE, rng)
@@ -109,6 +161,19 @@ def simulate(name: str, seed: int) -> Tuple[OccupancyGrid, Drive, List[Observati
     return site.grid, drive, list(observations_of(site.grid, poses, drive, rng))
 
 
+def with_pauses(observations: List[Observation], rng: np.random.Generator) -> List[Observation]:
+    """Drop a few scans in a row, some times, and delay what follows by minutes."""
+    starts = np.sort(rng.integers(len(observations) // 10, len(observations) - 10, PAUSES))
+    kept, delay, resume = [], 0.0, 0
+    for i, one in enumerate(observations):
+        if i in starts:
+            resume = i + int(rng.integers(*PAUSE_SCANS))
+            delay += rng.uniform(*PAUSE_SECONDS)
+        if i >= resume:
+            kept.append(replace(one, scan=replace(one.scan, stamp=one.scan.stamp + delay)))
+    return kept
+
+
 def true_poses(places: Iterator[np.ndarray], drive: Drive, rng: np.random.Generator) -> Iterator[Pose2]:
     """Poses of a robot that turns in place and drives straight, swaying a little."""
     x, y = next(places)
@@ -116,7 +181,8 @@ def true_poses(places: Iterator[np.ndarray], drive: Drive, rng: np.random.Genera
     for goal_x, goal_y in places:
         while math.hypot(goal_x - x, goal_y - y) > 0.5 * SPEED * drive.period + 0.05:
             bearing = wrap(math.atan2(goal_y - y, goal_x - x) - yaw)
-            turn = float(np.clip(bearing, -TURN_SPEED * drive.period, TURN_SPEED * drive.period))
+            most = min(TURN_SPEED * drive.period, MAX_TURN)
+            turn = float(np.clip(bearing, -most, most))
             yaw = wrap(yaw + turn + rng.normal(0.0, 0.01))
             step = SPEED * drive.period * max(0.0, 1.0 - 3.0 * abs(bearing))
             x, y = x + step * math.cos(yaw), y + step * math.sin(yaw)
@@ -135,9 +201,10 @@ class DriftingOdometry:
     def move(self, motion: Pose2) -> Pose2:
         """Return the odometry pose after a true ``motion``."""
         distance = math.hypot(motion.x, motion.y)
-        slip = 1.0 + self._rng.normal(0.02, 0.05)
+        random_error = self._drive.random_error
+        slip = 1.0 + random_error * self._rng.normal(0.02, 0.05)
         drift = self._drive.turn_error * motion.yaw + self._drive.distance_error * distance
-        drift += self._rng.normal(0.0, 0.01 * math.sqrt(distance + abs(motion.yaw)))
+        drift += self._rng.normal(0.0, random_error * 0.01 * math.sqrt(distance + abs(motion.yaw)))
         if self._drive.slip_distance < math.inf and self._rng.random() * self._drive.slip_distance < distance:
             motion = motion @ Pose2(-self._rng.uniform(0.0, SLIP_DISTANCE), 0.0)
             drift += self._rng.uniform(-SLIP_TURN, SLIP_TURN)
@@ -148,8 +215,8 @@ class DriftingOdometry:
 class Person:
     """A person who walks straight past the robot for a while; then perhaps another."""
 
-    def __init__(self, period: float, rng: np.random.Generator):
-        self._period, self._rng = period, rng
+    def __init__(self, period: float, rng: np.random.Generator, radius: float = PERSON_RADIUS):
+        self._period, self._rng, self._radius = period, rng, radius
         self._scans_left = 0
         self._is_there = False
 
@@ -168,25 +235,30 @@ class Person:
             x, y = laser.inverse().transform_points(self._xy[None])[0]
             along = x * np.cos(angles) + y * np.sin(angles)
             beside = np.abs(y * np.cos(angles) - x * np.sin(angles))
-            met = (along > 0.3) & (beside < PERSON_RADIUS)
-            front = along[met] - np.sqrt(PERSON_RADIUS**2 - beside[met] ** 2)
+            met = (along > 0.3) & (beside < self._radius)
+            front = along[met] - np.sqrt(self._radius**2 - beside[met] ** 2)
             ranges[met] = np.minimum(ranges[met], front)
 
 
 def observations_of(
-    grid: OccupancyGrid, poses: Iterator[Pose2], drive: Drive, rng: np.random.Generator
+    place: Union[OccupancyGrid, Garden], poses: Iterator[Pose2], drive: Drive, rng: np.random.Generator
 ) -> Iterator[Observation]:
     """Simulate the laser and odometry along the true poses."""
-    angles = -0.5 * math.pi + math.pi / BEAMS * np.arange(BEAMS)
-    odometry, people = DriftingOdometry(drive, rng), [Person(drive.period, rng) for _ in range(drive.people)]
+    angles = -0.5 * math.pi + math.pi / drive.beams * np.arange(drive.beams)
+    carts = round(CART_SHARE * drive.people) if drive.has_garden else 0
+    radii = [CART_RADIUS if number < carts else PERSON_RADIUS for number in range(drive.people)]
+    odometry, people = DriftingOdometry(drive, rng), [Person(drive.period, rng, radius) for radius in radii]
     last: Optional[Pose2] = None
     for i, pose in enumerate(poses):
         in_odom = odometry.move(Pose2() if last is None else last.inverse() @ pose)
         last, laser = pose, pose @ LASER_IN_BASE
-        ranges = cast_rays(grid, laser, angles, RANGE_MAX)
+        if isinstance(place, Garden):
+            ranges = place.ranges(laser, angles, RANGE_MAX, 2 * i > drive.scans // 2, rng)
+        else:
+            ranges = cast_rays(place, laser, angles, RANGE_MAX)
         for person in people:
             person.hide(ranges, laser, angles)
-        ranges += rng.normal(0.0, RANGE_NOISE, BEAMS)
+        ranges += rng.normal(0.0, RANGE_NOISE, drive.beams)
         ranges[ranges > drive.max_range] = RANGE_MAX
         readings = np.round(ranges, 2).astype(np.float32)
         step = angles[1] - angles[0]
@@ -221,10 +293,10 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("folder", type=Path, help="output folder of bags and relations")
     parser.add_argument("--seed", type=int, default=0, help="of building, route and noise (default: 0)")
-    parser.add_argument("--only", choices=[*DRIVES, "site"], help="simulate only this one")
+    parser.add_argument("--only", choices=[*DRIVES, *DRAWN], help="simulate only this one")
     options = parser.parse_args()
     options.folder.mkdir(parents=True, exist_ok=True)
-    for name in [options.only] if options.only else [*DRIVES, "site"]:
+    for name in [options.only] if options.only else [*DRIVES, *DRAWN]:
         _, _, observations = simulate(name, options.seed)
         write_bag(options.folder / f"{name}.bag", observations, base_frame="base_link")
         relations = relations_of(observations)

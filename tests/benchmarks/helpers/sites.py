@@ -197,6 +197,24 @@ class Campus:
         lengths = [float(np.hypot(*(self._places[a] - self._places[b]))) for a, b in self._links]
         self._graph = csr_matrix((lengths, tuple(ends.T)), shape=(len(self._places),) * 2)
 
+    @property
+    def yard_paths(self) -> List[Tuple[np.ndarray, np.ndarray]]:
+        """Both ends (2,) of each path outside of the buildings, also of those to their doors."""
+        ends = [(a, b) for a, b in self._links if self._floor_of[a] < 0 and self._floor_of[b] < 0]
+        return [(self._places[a], self._places[b]) for a, b in ends]
+
+    def blocks_path(self, low: np.ndarray, high: np.ndarray) -> bool:
+        """Whether a box comes within half a metre of the way of the robot, or touches a building."""
+        cells = self.grid.cells
+        col, row, end_col, end_row = np.rint(np.concatenate((low, high)) / self.grid.resolution).astype(int)
+        if (cells[max(row, 0) : end_row + 1, max(col, 0) : end_col + 1] == OCCUPIED).any():
+            return True
+        for first, second in self._links:
+            ends = np.array([self._places[first], self._places[second]])
+            if (ends.min(axis=0) < high + 1.0).all() and (ends.max(axis=0) > low - 1.0).all():
+                return True
+        return False
+
     def walk(self, rng: np.random.Generator, stops: int = 3, again: int = 4) -> Iterator[np.ndarray]:
         """Yield waypoints (x, y): ``stops`` crossings in each building, then the first ``again`` ones."""
         tour: List[int] = []

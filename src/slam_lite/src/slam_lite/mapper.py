@@ -13,6 +13,7 @@ from planar.geometry.pose import check_pose
 from slam_lite.back_end import BackEnd, ClosureResult, ClosureTask
 from slam_lite.config import MapperSettings
 from slam_lite.front_end import FrontEnd, RecentKeyframes, TrackedPose
+from slam_lite.graph.pose_graph import relative_pose
 from slam_lite.keyframes import is_keyframe, prune_keyframes
 from slam_lite.no_return import NoReturnDetector
 from slam_lite.odometry.checks import DiscontinuityDetector, MotionFilter
@@ -20,6 +21,8 @@ from slam_lite.point_cloud import PointCloud, point_cloud_of
 from slam_lite.rendering import Evidence, ScanBeams, beams_of, render_in_bands
 from slam_lite.state import MapState
 
+# Multiple of the distance expected between two searches for loop closures after which one is due in any case.
+_SPARSE = 1.5
 # Largest distance [m] of a given robot pose from the map: one grid has to contain both.
 _MAX_DISTANCE_FROM_MAP = 200.0
 
@@ -129,11 +132,19 @@ class Mapper:
 
     def closure_task(self) -> Optional[ClosureTask]:
         """Return the loop closure search that is due, None if none is."""
-        settings = self._settings
-        if not settings.close_loops or len(self._back_end) < self._searched_count + settings.closure_interval:
+        if not self._settings.close_loops or not self._is_search_due():
             return None
         self._searched_count = len(self._back_end)
         return self._back_end.closure_task()
+
+    def _is_search_due(self) -> bool:
+        """Whether there are enough keyframes since the last search, or few that are far apart."""
+        settings, new = self._settings, len(self._back_end) - self._searched_count
+        if new >= settings.closure_interval or self._searched_count == 0:
+            return new >= settings.closure_interval
+        moved = relative_pose(self.keyframe_poses, self._searched_count - 1, len(self._back_end) - 1)
+        far = _SPARSE * settings.closure_interval * settings.keyframe_distance
+        return new > 0 and math.hypot(moved.x, moved.y) > far
 
     def apply_closures(self, result: ClosureResult) -> None:
         """Apply the result of a closure task.

@@ -40,11 +40,13 @@ class PoseConstraint:
         base_in_place: Pose of the base in the frame of the place.
         information: (3, 3), of that pose, 1 / (m, m, rad)^2.
         degenerate_direction: Unit vector (2,) along which there is no information; zeros if there is none.
+        response: Fraction of the points that match, 0 to 1.
     """
 
     base_in_place: Pose2
     information: np.ndarray
     degenerate_direction: np.ndarray
+    response: float
 
 
 def refine_at(start: Pose2, cloud: PointCloud, local_map: LocalMap, min_response: float) -> Optional[Match]:
@@ -96,10 +98,10 @@ def constraint_at_peak(
     shift = math.inf if is_degenerate else _max_shift(match, weakest, cloud, local_map)
     if shift < _DEGENERATE_SHIFT:
         information = _with_error(match.information, shift * weakest)
-        return PoseConstraint(match.base_pose, information, np.zeros(2))
+        return PoseConstraint(match.base_pose, information, np.zeros(2), match.response)
     match = match_at(_nearest_on_line(match.base_pose, weakest, guess)) or match
     information = _with_error(match.information, _UNKNOWN_SIGMA * weakest)
-    return PoseConstraint(match.base_pose, information, weakest)
+    return PoseConstraint(match.base_pose, information, weakest, match.response)
 
 
 def _max_shift(match: Match, direction: np.ndarray, cloud: PointCloud, local_map: LocalMap) -> float:

@@ -20,6 +20,8 @@ from slam_lite.loops.loop_candidates import RECENT_PATH, LoopCandidate
 
 # Loop closures found in windows up to this size [m] need no confirmation.
 _FAMILIAR_DISTANCE = 1.0
+# Log likelihood ratio from which on other ones of an unambiguous candidate need none either.
+CERTAIN_RATIO = 2.0
 # Largest distance between two loop closures that share no scan and yet concern the same segment [m].
 _MAX_WITNESS_DISTANCE = 15.0
 # Distance over which a recognized place has to be similar [m]: crossings of corridors resemble each other.
@@ -42,12 +44,14 @@ class LoopClosure:
         candidate: Candidate at which it was found.
         degenerate_direction: Unit vector (2,), along the axes of ``edge.first``, in which the edge has no
             information, as along a smooth corridor; zeros if there is none.
+        log_likelihood_ratio: How much more likely the match is if both segments see the same place.
         contradicts_graph: Whether it is an outlier given the covariance of the graph.
     """
 
     edge: Edge
     candidate: LoopCandidate
     degenerate_direction: np.ndarray
+    log_likelihood_ratio: float = 0.0
     contradicts_graph: bool = False
 
     @property
@@ -60,7 +64,14 @@ class LoopClosure:
         """Number of further consistent loop closures that are needed to confirm it."""
         if self.candidate.is_recognized:
             return 2
-        return 0 if self.candidate.window.distance <= _FAMILIAR_DISTANCE and not self.contradicts_graph else 1
+        is_familiar = self.candidate.window.distance <= _FAMILIAR_DISTANCE or self._is_certain
+        return 0 if is_familiar and not self.contradicts_graph else 1
+
+    @property
+    def _is_certain(self) -> bool:
+        """Whether the match alone shows that it is the place near which the graph expects the robot."""
+        is_near = not self.candidate.is_ambiguous and not self.degenerate_direction.any()
+        return is_near and self.log_likelihood_ratio >= CERTAIN_RATIO
 
 
 class LoopClosureVerifier:

@@ -10,9 +10,10 @@ from slam_lite.config import MapperSettings
 from slam_lite.graph.pose_graph import Edge, relative_pose
 from slam_lite.loops.degeneracy import constraint_at_peak, refine_at
 from slam_lite.loops.loop_candidates import LoopCandidate
-from slam_lite.loops.loop_closure import LoopClosure
+from slam_lite.loops.loop_closure import CERTAIN_RATIO, LoopClosure
+from slam_lite.loops.match_likelihood import log_likelihood_ratio
 from slam_lite.loops.static_points import static_points
-from slam_lite.loops.visibility import PosedCloud, visibility_conflict
+from slam_lite.loops.visibility import PosedCloud, seen_fraction
 from slam_lite.matching.correlative import search_branch_and_bound
 from slam_lite.matching.local_map import LocalMap, Match
 from slam_lite.point_cloud import PointCloud, downsampled
@@ -20,8 +21,9 @@ from slam_lite.point_cloud import PointCloud, downsampled
 # Keyframes of the place, to each side, and their distance from it [m], that are merged for a match in a small
 # window.
 _PLACE_KEYFRAMES, _PLACE_RADIUS = 20, 6.0
-# Fraction of the walls that may be seen through at an ambiguous candidate, as people may have left since.
-_MAX_VISIBILITY_CONFLICT = 0.025
+# Least log likelihood ratio of a match, and least share of its points that the place has in view: a robot that
+# arrives from elsewhere has seen much that the place cannot show.
+_MIN_RATIO, _MIN_SEEN = 1.0, 0.6
 _MIN_POINTS, _MAX_POINTS = 50, 500
 
 
@@ -59,19 +61,27 @@ def find_loop_closure(
     peak = search_branch_and_bound(sample, layer, candidate.guess, candidate.window, min_score, apart=0.6)
     if peak is None or not peak.is_unique or (candidate.is_recognized and peak.degenerate_direction.any()):
         return None
+    share = 1.0 if candidate.is_ambiguous else _MIN_SEEN
+    min_response = share * settings.closure_min_response
 
     def match_at(start: Pose2) -> Optional[Match]:
-        match = refine_at(start, recent_cloud, local_map, settings.closure_min_response)
-        if match is None or not candidate.is_ambiguous:
-            return match
-        conflict = visibility_conflict(place_clouds, recent_clouds, match.base_pose)
-        return match if conflict <= _MAX_VISIBILITY_CONFLICT else None
+        return refine_at(start, recent_cloud, local_map, min_response)
 
     constraint = constraint_at_peak(peak, candidate.guess, recent_cloud, local_map, match_at)
     if constraint is None:
         return None
+    is_partial = constraint.response < settings.closure_min_response
+    ratio = 0.0
+    if candidate.is_ambiguous or is_partial:
+        pose, response = constraint.base_in_place, constraint.response
+        if is_partial:
+            response /= max(seen_fraction(pose.transform_points(recent_cloud.points_xy), place_clouds), _MIN_SEEN)
+        ratio = log_likelihood_ratio(place_clouds, recent_clouds, pose, response, local_map)
+        is_good = response >= settings.closure_min_response
+        if not is_good or ratio < (CERTAIN_RATIO if is_partial else _MIN_RATIO):
+            return None
     edge = Edge(place, recent, constraint.base_in_place, constraint.information, is_loop=True)
-    return LoopClosure(edge, candidate, constraint.degenerate_direction)
+    return LoopClosure(edge, candidate, constraint.degenerate_direction, ratio)
 
 
 def _clouds_around(

@@ -19,6 +19,8 @@ _SECTORS = 360
 _BEHIND, _AT = 0.4, 0.2
 # Number of points of a segment that are checked, and step between the scans of the other that check them.
 _MAX_POINTS, _SCAN_STEP = 500, 4
+# Number of scans that decide which points are in view.
+_MAX_SCANS = 30
 
 
 def seen_through_fraction(walls: PointCloud, scans: Iterable[PosedCloud]) -> float:
@@ -39,6 +41,15 @@ def seen_through_fraction(walls: PointCloud, scans: Iterable[PosedCloud]) -> flo
     return through / max(through + hit, 1)
 
 
+def merged_walls(scans: Sequence[PosedCloud]) -> PointCloud:
+    """Return the points of scans that are checked, in their common frame.
+
+    Args:
+        scans: Points of each scan, with the pose of its base in a common frame.
+    """
+    return downsampled(merge_clouds(scans), _MAX_POINTS)
+
+
 def visibility_conflict(
     place: Sequence[PosedCloud], recent: Sequence[PosedCloud], recent_in_place: Pose2
 ) -> float:
@@ -54,14 +65,36 @@ def visibility_conflict(
     """
     recent = [(cloud, recent_in_place @ pose) for cloud, pose in recent]
     return max(
-        seen_through_fraction(downsampled(merge_clouds(walls), _MAX_POINTS), scans[::_SCAN_STEP])
+        seen_through_fraction(merged_walls(walls), scans[::_SCAN_STEP])
         for walls, scans in ((place, recent), (recent, place))
     )
+
+
+def seen_fraction(points_xy: np.ndarray, scans: Sequence[PosedCloud]) -> float:
+    """Compute which fraction of points at least one of several scans sees, or would see.
+
+    Args:
+        points_xy: (N, 2) [m].
+        scans: Points of each scan, with the pose of its base in the frame of ``points_xy``.
+
+    Returns:
+        Fraction, 0 to 1; the other points are hidden from all scans, or out of their range.
+    """
+    is_seen = np.zeros(len(points_xy), dtype=np.bool_)
+    for cloud, base_pose in scans[:: max(1, len(scans) // _MAX_SCANS)]:
+        _classify(base_pose.inverse().transform_points(points_xy), cloud.points_xy, is_seen)
+    return float(is_seen.mean()) if len(is_seen) else 0.0
 
 
 @numba.njit(cache=True, nogil=True)
 def _count_visible(points, ends):
     """How many points beams from the origin to ``ends`` see through, and how many they hit."""
+    return _classify(points, ends, np.zeros(len(points), dtype=np.bool_))
+
+
+@numba.njit(cache=True, nogil=True)
+def _classify(points, ends, is_seen):
+    """Count as ``_count_visible``, and mark the points (N,) that beams see through or hit."""
     nearest, farthest = np.full(_SECTORS, np.inf), np.zeros(_SECTORS)
     for i in range(len(ends)):
         sector, distance = _polar(ends[i])
@@ -79,8 +112,10 @@ def _count_visible(points, ends):
             continue
         if least > distance + _BEHIND:
             through += 1
+            is_seen[i] = True
         elif least < distance + _AT and most > distance - _AT:
             hit += 1
+            is_seen[i] = True
     return through, hit
 
 
