@@ -77,3 +77,39 @@ def observation_from_points(
         np.hypot(offsets_xy[:, 0], offsets_xy[:, 1]),
         heights=points_xyz[:, 2],
     )
+
+
+def observation_from_projected_scan(
+    topic: str, scan: Scan, laser_in_base: np.ndarray, origin_xy: np.ndarray
+) -> Observation:
+    """Convert the scan of a laser that is tilted, or whose beams begin elsewhere, to a costmap observation.
+
+    The end points are projected onto the floor and keep their heights (laser_geometry).
+
+    Args:
+        topic: Topic of the scan.
+        scan: The scan; its mounting pose is ignored.
+        laser_in_base: Pose of the laser in the base frame, z above the floor (4, 4).
+        origin_xy: (2,) origin of the beams in the base frame [m].
+
+    Returns:
+        One beam for each of the scan, from ``origin_xy``; NaN ranges where the scan has no valid range.
+    """
+    angles = scan.angle_min + scan.angle_increment * np.arange(len(scan.ranges))
+    reach = np.where(scan.hits, scan.ranges.astype(np.float64), scan.range_max)
+    ends_in_laser = np.column_stack((reach * np.cos(angles), reach * np.sin(angles), np.zeros(len(reach))))
+    ends = ends_in_laser @ laser_in_base[:3, :3].T + laser_in_base[:3, 3]
+    offsets_xy = ends[:, :2] - origin_xy
+    ranges = np.where(scan.hits, np.hypot(offsets_xy[:, 0], offsets_xy[:, 1]), np.nan)
+    ranges[np.isposinf(scan.ranges)] = np.inf
+    offset = float(np.hypot(*(laser_in_base[:2, 3] - origin_xy)))
+    return Observation(
+        topic,
+        scan.stamp,
+        Pose2(float(origin_xy[0]), float(origin_xy[1])),
+        np.arctan2(offsets_xy[:, 1], offsets_xy[:, 0]),
+        ranges,
+        0.0,
+        scan.range_max + offset,
+        ends[:, 2],
+    )
