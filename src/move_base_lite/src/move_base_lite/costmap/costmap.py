@@ -52,6 +52,7 @@ class LayeredCostmap:
         self.footprint: Footprint = footprint_from(
             settings.footprint, settings.robot_radius, settings.footprint_padding
         )
+        grid = None if grid is None else grid.axis_aligned()
         self._map = grid
         self._map_window = map_window or _window_of_map(settings, grid)
         self.window: CostmapWindow = self._map_window or _window_of(settings)
