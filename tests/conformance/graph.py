@@ -1,5 +1,6 @@
-"""A node on a ROS master of its own, with an observer: what our node and the official one do with one input."""
+"""A node with an observer on a separate ROS master: what our and the official node do with one input."""
 
+import contextlib
 import json
 import os
 import shutil
@@ -43,7 +44,7 @@ def official_node(package: str, name: str) -> Optional[List[str]]:
 
 
 def observe(observer: str, command: List[str], **given: Any) -> Dict[str, Any]:
-    """Run an observer, which starts a node, on a master of their own.
+    """Run an observer, which starts a node, on a separate master.
 
     Args:
         observer: Name of a module of this folder; it reads JSON and prints JSON.
@@ -95,10 +96,8 @@ def _start(command: List[str], environment: Dict[str, str], **how: Any) -> "subp
 
 
 def _end(process: "subprocess.Popen[bytes]") -> None:
-    try:
+    with contextlib.suppress(ProcessLookupError):
         os.killpg(process.pid, signal.SIGKILL)
-    except ProcessLookupError:
-        pass
     process.wait()
 
 

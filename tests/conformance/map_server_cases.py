@@ -1,7 +1,7 @@
 """Statements of map_server 1.17: its source and https://wiki.ros.org/map_server.
 
-The input of a case has the kind of ``map_server_rig``: an image (``image``, ``yaml``), a run of map_server
-(``files``, ``arguments``, ``parameters``, ``changes``) or of map_saver (``data``, ``quaternion``, ``arguments``).
+The input of a case is of a ``kind``: an image (``files``), a run of map_server (``files``, ``arguments``,
+``parameters``, ``changes``), or a run of map_saver (``data``, ``width``, ``quaternion``, ``arguments``).
 """
 
 import io
@@ -63,7 +63,7 @@ def image(
 def server(
     name: str, source: str, fact: str, expected: Any, official: Any = SAME, reason: str = "", **given: Any
 ):
-    """A case of a run of map_server; ``fact``: path in what observe_map_server reports, or "log has TEXT"."""
+    """A case of a run of map_server; ``fact``: path in what observe_map_server reports (facts.py)."""
     files = {"map.pgm": pgm(), "map.yaml": list(description(**given.pop("yaml", {})).encode())}
     files.update(given.pop("files", {}))
     arguments = given.pop("arguments", ["map.yaml"])
@@ -313,7 +313,10 @@ SERVER = [
 ]
 
 HALF_TURN, NO_TURN = [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]
-SAVED = "image: map.pgm\nresolution: 0.500000\norigin: [-1.000000, 2.000000, 0.000000]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n\n"
+SAVED = (
+    "image: map.pgm\nresolution: 0.500000\norigin: [-1.000000, 2.000000, 0.000000]\n"
+    "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n\n"
+)
 SAVER_CASES = [
     saver("free_occupied_and_unknown_are_254_0_and_205", "pixels", [254, 0, 205, 205]),
     saver(
@@ -335,8 +338,8 @@ SAVER_CASES = [
     ),
     saver("the_image_is_a_binary_pgm", "magic", "P5"),
     saver("the_description_has_all_keys", "yaml", SAVED),
-    saver("f_names_the_files", "has home.pgm", True, arguments=["-f", "home"]),
-    saver("without_f_the_files_are_map", "has map.yaml", True),
+    saver("f_names_the_files", "files has home.pgm", True, arguments=["-f", "home"]),
+    saver("without_f_the_files_are_map", "files has map.yaml", True),
     saver("the_yaw_of_the_origin_is_saved", "yaml has 3.141593", True, quaternion=HALF_TURN),
     saver(
         "a_quaternion_of_zeros_is_no_rotation",

@@ -4,6 +4,7 @@ import tempfile
 from pathlib import Path
 from typing import Any, List, Mapping, Optional
 
+from facts import fact_of
 from graph import observe, official_node, our_node
 
 from planar import MapFileError, load_map
@@ -42,17 +43,9 @@ def official_command(case: Mapping[str, Any]) -> Optional[List[str]]:
 def _observed(case: Mapping[str, Any], command: List[str]) -> Any:
     given = {key: value for key, value in case.items() if key not in ("kind", "fact")}
     observed = observe(f"observe_map_{case['kind']}", command, **given)
-    fact = case["fact"]
-    if fact.startswith("has "):
-        return fact[len("has ") :] in observed["files"]
-    name, is_search, text = fact.partition(" has ")
-    if is_search:
-        return text in observed.get(name, "")
-    value: Any = observed
-    for key in fact.split("."):
-        value = value[int(key) if isinstance(value, list) else key]
-    if name == "services":
+    value = fact_of(observed, case["fact"])
+    if case["fact"] == "services":
         return [service for service in value if not service.endswith(("_loggers", "_logger_level"))]
-    if name == "topics":
+    if case["fact"] == "topics":
         return {topic: kind for topic, kind in value.items() if topic != "/rosout"}
     return value

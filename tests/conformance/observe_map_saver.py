@@ -1,7 +1,5 @@
 """Observer of map_saver: the files it writes of a map on a topic."""
 
-import os
-
 import numpy as np
 import rospy
 from nav_msgs.msg import OccupancyGrid
@@ -22,16 +20,17 @@ def main():
     publisher.publish(message)
     node.start(*node.given.get("arguments", []))
     node.wait_until(lambda: node.exit_code is not None)
-    observed = {"exit_code": node.exit_code, "log": node.log, "files": sorted(os.listdir(node.folder))}
-    for name in observed["files"]:
-        if name.endswith(".pgm"):
-            with open(os.path.join(node.folder, name), "rb") as file:
-                data = file.read()
-            observed["pixels"] = np.frombuffer(data[-len(message.data) :], np.uint8).tolist()
-            observed["magic"] = data[:2].decode()
-        elif name.endswith(".yaml"):
-            with open(os.path.join(node.folder, name), encoding="utf-8") as file:
-                observed["yaml"] = file.read()
+    observed = {
+        "exit_code": node.exit_code,
+        "log": node.log,
+        "files": sorted(path.name for path in node.folder.iterdir()),
+    }
+    for pgm in node.folder.glob("*.pgm"):
+        data = pgm.read_bytes()
+        observed["pixels"] = np.frombuffer(data[-len(message.data) :], np.uint8).tolist()
+        observed["magic"] = data[:2].decode()
+    for description in node.folder.glob("*.yaml"):
+        observed["yaml"] = description.read_text(encoding="utf-8")
     node.end()
     report(observed)
 

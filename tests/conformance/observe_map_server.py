@@ -1,7 +1,5 @@
 """Observer of map_server: its topics, services and messages."""
 
-import os
-
 import rospy
 from nav_msgs.msg import MapMetaData, OccupancyGrid
 from nav_msgs.srv import GetMap
@@ -34,8 +32,7 @@ def main():
     """Start map_server with files of the input and report."""
     node = ObservedNode("map_server")
     for name, content in node.given.get("files", {}).items():
-        with open(os.path.join(node.folder, name), "wb") as file:
-            file.write(bytes(content))
+        (node.folder / name).write_bytes(bytes(content))
     node.start(*node.given["arguments"])
     observed = {}
     if node.wait_until(lambda: "/static_map" in node.services() and "/map" in node.topics()):
@@ -48,7 +45,7 @@ def main():
         observed["topics"], observed["services"] = node.topics(), node.services()
         observed["changes"] = []
         for url in node.given.get("changes", []):
-            response = rospy.ServiceProxy("change_map", LoadMap)(url.replace("FOLDER", node.folder))
+            response = rospy.ServiceProxy("change_map", LoadMap)(url.replace("FOLDER", str(node.folder)))
             now = rospy.ServiceProxy("static_map", GetMap)().map
             observed["changes"].append([response.result == 0, list(response.map.data), list(now.data)])
     observed["exit_code"] = node.exit_code

@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 import time
+from pathlib import Path
 from typing import Any, Callable, Dict, List, Optional
 
 import rosgraph
@@ -23,16 +24,16 @@ class ObservedNode:
 
     def __init__(self, name: str):
         self.given: Dict[str, Any] = json.loads(sys.stdin.read())
-        self.name, self.folder = name, os.environ["FOLDER"]
+        self.name, self.folder = name, Path(os.environ["FOLDER"])
         rospy.init_node("observer", anonymous=False, disable_signals=True)
         for key, value in self.given.get("parameters", {}).items():
             rospy.set_param(f"/{name}/{key}", value)
 
     def start(self, *arguments: str) -> None:
         """Start the node."""
-        self._log = open(os.path.join(self.folder, "log"), "wb")  # noqa: SIM115
         command = [*self.given["command"], *arguments, f"__name:={self.name}"]
-        self.process = subprocess.Popen(command, stdout=self._log, stderr=subprocess.STDOUT, cwd=self.folder)
+        with (self.folder / "log").open("wb") as log:
+            self.process = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT, cwd=self.folder)
 
     @property
     def exit_code(self) -> Optional[int]:
@@ -42,8 +43,7 @@ class ObservedNode:
     @property
     def log(self) -> str:
         """What it has printed."""
-        with open(os.path.join(self.folder, "log"), encoding="utf-8", errors="replace") as log:
-            return log.read()
+        return (self.folder / "log").read_text(encoding="utf-8", errors="replace")
 
     def wait_until(self, condition: Callable[[], Any], seconds: float = PATIENCE) -> bool:
         """Wait for a condition, or the end of the node; return whether the condition holds."""

@@ -78,8 +78,8 @@ class OccupancyGrid:
         """Return the grid with its axes along those of the map.
 
         Returns:
-            This grid if its origin has no yaw; otherwise one that contains it, with cells of the same size and
-            the values at their centres, UNKNOWN around it.
+            This grid if its origin has no yaw; otherwise one that contains it, with the values at the centres
+            of its cells, which have the same size, and UNKNOWN around it.
         """
         if self.origin.yaw == 0.0:
             return self

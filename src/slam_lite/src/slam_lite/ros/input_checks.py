@@ -39,9 +39,9 @@ class LaserMountingCheck:
             return True
         rospy.logwarn_throttle(
             WARNING_SECONDS,
-            "laser %s has to be mounted planar: the z coordinate of its axis has to be 1 or -1, not %.5f",
-            frame_name(laser_frame),
+            "Laser has to be mounted planar! Z-coordinate has to be 1 or -1, but gave: %.5f (frame %s)",
             height,
+            frame_name(laser_frame),
         )
         return False
 
