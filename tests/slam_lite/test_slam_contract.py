@@ -177,8 +177,8 @@ class SlamContractTest(unittest.TestCase):
         rospy.Publisher("/tf", TFMessage, queue_size=1, latch=True).publish(TFMessage([tilted]))
         self.transforms.send(circle(0.0), "odom", "base_link", stamp)
         self.scans.publish(sweep(self.truth, circle(0.0), stamp, "tilted"))
-        reason = "the z coordinate of its axis has to be 1 or -1, not 0.00000"
-        self.wait_for(lambda: f"laser tilted has to be mounted planar: {reason}" in self.log_texts)
+        reason = "Z-coordinate has to be 1 or -1, but gave: 0.00000 (frame tilted)"
+        self.wait_for(lambda: f"Laser has to be mounted planar! {reason}" in self.log_texts)
         self.assertEqual(self.newest_map().header.stamp, before)
 
     def test_an_invalid_parameter_ends_the_node_and_is_named(self):

@@ -121,6 +121,15 @@ def test_a_robot_is_tracked_although_its_odometry_drifts(model):
     assert np.sqrt(np.mean(errors[:, 1] ** 2)) < 0.05
 
 
+@pytest.mark.parametrize("model", ["likelihood_field", "beam"])
+def test_a_robot_is_tracked_in_a_map_whose_origin_is_turned(model):
+    corner = Pose2(4.0, -1.0, 2.2)
+    toy = Toy(corner @ START)
+    toy.grid = replace(home(), origin=corner @ home().origin)
+    errors = tracking_errors(toy, started(toy, replace(TURTLEBOT, sensor_model=model)), THROUGH_ALL_ROOMS)
+    assert errors[:, 0].max() < 0.25
+
+
 def test_a_laser_that_hangs_upside_down_is_as_good():
     toy = Toy(START, upside_down=True)
     errors = tracking_errors(toy, started(toy), THROUGH_ALL_ROOMS)

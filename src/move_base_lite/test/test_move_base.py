@@ -2,11 +2,13 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from robot_in_picture import PERIOD, SETTINGS, Robot, room
 
 from move_base_lite import MoveBase, PoseHistory, Status
-from planar import Pose2, Twist2
+from move_base_lite.costmap import LETHAL
+from planar import OCCUPIED, Pose2, Twist2
 
 START, GOAL = Pose2(1.0, 2.0), Pose2(4.0, 2.0)
 
@@ -137,3 +139,21 @@ def test_inputs_are_checked_in_the_order_of_their_stamps():
     drive.move_base.add_scan(scan)
     drive.move_base.inputs.check_new(Twist2())
     assert checked == [0.1, 0.2, "scan", 0.3]
+
+
+@pytest.mark.parametrize("corner", [Pose2(3.0, 1.0, 0.6), Pose2(-2.0, 5.0, -2.0)])
+def test_a_map_whose_origin_is_turned_is_driven_in(corner):
+    """map_server documents the yaw of origin; the official costmap_2d and amcl ignore it."""
+    grid = replace(room(6.0, 4.0), origin=corner)
+    drive = Drive()
+    drive.robot = Robot(grid, corner @ START)
+    drive.move_base = MoveBase(SETTINGS, drive.poses, grid)
+    drive.tick()
+    costmap = drive.move_base.navigator.global_costmap
+    walls_xy = grid.points_of(np.argwhere(grid.cells == OCCUPIED))
+    costs = [costmap.costs[costmap.window.cell_of(x, y)] for x, y in walls_xy]
+    assert np.mean(np.array(costs) == LETHAL) > 0.9
+    drive.move_base.set_goal(corner @ GOAL)
+    statuses = [result.decision.status for result in drive.run(20.0)]
+    assert Status.SUCCEEDED in statuses
+    assert drive.robot.pose.distance_to(corner @ GOAL) < 0.2

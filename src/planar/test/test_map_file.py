@@ -142,3 +142,76 @@ def test_an_invalid_image_is_refused_with_the_reason(tmp_path, data, why):
     (tmp_path / "a.pgm").write_bytes(data)
     with pytest.raises(MapFileError, match=why):
         load_map(path)
+
+
+SHADES = [0, 100, 205, 254]
+TRINARY = [OCCUPIED, UNKNOWN, UNKNOWN, FREE]
+HIGH_BYTES = np.array([SHADES], np.uint16) * 257
+
+
+def cells_of(folder, image, name, **how):
+    """Cells of one row; ``image``: a Pillow image, or the bytes of the file."""
+    path = folder / name
+    if isinstance(image, bytes):
+        path.write_bytes(image)
+    else:
+        image.save(path)
+    return cells_from_image(path, **how)[0].tolist()
+
+
+@pytest.mark.parametrize("name", ["deep.png", "deep.tif"])
+def test_an_image_of_16_bits_has_the_shades_of_8(tmp_path, name):
+    assert cells_of(tmp_path, Image.fromarray(HIGH_BYTES), name) == TRINARY
+
+
+def test_pgm_images_of_16_bits_are_scaled(tmp_path):
+    pixels = HIGH_BYTES.astype(">u2").tobytes()
+    assert cells_of(tmp_path, b"P5\n4 1\n65535\n" + pixels, "deep.pgm") == TRINARY
+    assert cells_of(tmp_path, b"P2\n4 1\n65535\n0 25700 52685 65278\n", "deep.pgm") == TRINARY
+    assert cells_of(tmp_path, b"P2\n4 1\n1000\n0 393 804 997\n", "deep.pgm") == TRINARY
+
+
+@pytest.mark.parametrize(
+    "header", [b"P5 4 1 254\n", b"P5\n# CREATOR: a camera 1 2 3\n4 # 5\n1\n254\n"], ids=["plain", "commented"]
+)
+def test_a_pgm_image_up_to_254_is_scaled_down_to_whole_shades(tmp_path, header):
+    """205 of 254 is 205.8, of which map_server (SDL_image) makes 205, unknown; 206 would be free."""
+    assert cells_of(tmp_path, header + bytes(SHADES), "most_254.pgm") == TRINARY
+
+
+def test_an_ascii_image_up_to_15_uses_the_full_range(tmp_path):
+    assert cells_of(tmp_path, b"P2\n3 1\n15\n0 8 15\n", "most_15.pgm") == [OCCUPIED, UNKNOWN, FREE]
+
+
+@pytest.mark.parametrize("kind, mode", [(np.float32, "F"), (np.int32, "I")])
+def test_images_of_floats_and_32_bits_are_refused(tmp_path, kind, mode):
+    image = Image.fromarray(np.array([[0.0, 100.0, 205.0, 254.0]], kind))
+    with pytest.raises(MapFileError, match=f"pixels of mode {mode}; expected integers of up to 16 bits"):
+        cells_of(tmp_path, image, "floats.tif")
+
+
+def test_a_portable_float_map_is_refused(tmp_path):
+    data = b"Pf\n2 1\n-1.0\n" + np.array([0.0, 1.0], "<f4").tobytes()
+    with pytest.raises(MapFileError, match="pixels of mode F"):
+        cells_of(tmp_path, data, "floats.pfm")
+
+
+def test_in_scale_mode_only_what_is_wholly_transparent_is_unknown(tmp_path):
+    pixels = np.array([[[170, 170, 170, alpha] for alpha in (255, 128, 1, 0)]], np.uint8)
+    how = {"mode": "scale", "occupied_thresh": 0.65, "free_thresh": 0.05}
+    assert cells_of(tmp_path, Image.fromarray(pixels), "alpha.png", **how) == [47, 47, 47, UNKNOWN]
+
+
+def test_raw_mode_rounds_the_mean_of_colours_down(tmp_path):
+    pixels = np.array([[[100, 101, 101], [7, 7, 8]]], np.uint8)
+    assert cells_of(tmp_path, Image.fromarray(pixels), "colours.png", mode="raw") == [100, 7]
+
+
+def test_colours_of_a_palette_count_not_their_numbers(tmp_path):
+    grey = Image.fromarray(np.array([SHADES], np.uint8))
+    assert cells_of(tmp_path, grey.convert("RGB").convert("P"), "palette.png")[::3] == [OCCUPIED, FREE]
+    assert cells_of(tmp_path, grey.convert("1", dither=Image.Dither.NONE), "bits.png")[::3] == [
+        OCCUPIED,
+        FREE,
+    ]
+    assert cells_of(tmp_path, b"P4\n4 1\n\x80", "bits.pbm") == [OCCUPIED, FREE, FREE, FREE]

@@ -47,3 +47,25 @@ def test_a_warning_names_contradicting_static_transforms(tmp_path):
         "at stamp 101.000, 53 % into the bag"
     ]
     assert [one.scan.laser_in_base for one in logged] == 11 * [LASER_IN_BASE] + 9 * [moved]
+
+
+def test_a_turning_mount_holds_at_the_stamp_of_each_scan(tmp_path):
+    """The transforms of a nodding or panning laser are recorded after the scans that they belong to."""
+    path = tmp_path / "turning.bag"
+    with rosbag.Bag(str(path), "w") as bag:
+        for i in range(20):
+            stamp = rospy.Time.from_sec(100.0 + 0.1 * i)
+            scan = LaserScan(ranges=[1.0] * 3, range_max=10.0)
+            scan.header.frame_id, scan.header.stamp = "laser", stamp
+            bag.write("/scan", scan, stamp)
+            transforms = [
+                transform_msg(Pose2(), "odom", "base_link", stamp),
+                transform_msg(Pose2(0.0, 0.0, 0.1 * i), "base_link", "laser", stamp),
+            ]
+            for later, transform in enumerate(transforms, 1):
+                bag.write("/tf", TFMessage([transform]), stamp + rospy.Duration(0.02 * later))
+    warnings = []
+    logged = list(ScanLog(path, "/scan", "base_link", "odom", warnings.append))
+    yaws = [one.scan.laser_in_base.yaw for one in logged]
+    assert yaws == pytest.approx([0.1 * i for i in range(20)])
+    assert not warnings

@@ -43,6 +43,7 @@ class MapSource:
         rospy.Service("set_map", SetMapArrays, self._on_set_map)
         if self._is_topic:
             rospy.Subscriber("map", OccupancyGridArrays, self._on_map, queue_size=1)
+            rospy.loginfo("Subscribed to map topic.")
 
     @property
     def name(self) -> str:

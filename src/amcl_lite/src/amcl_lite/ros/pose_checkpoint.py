@@ -24,13 +24,24 @@ from planar_ros.node.parameters import RESTORE, ParameterWriter, read_settings
 _LEAST_SECONDS = 0.5
 
 
+# Names in the official node's messages.
+IN_MESSAGES = {
+    "initial_pose_x": "initial pose X position",
+    "initial_pose_y": "initial pose Y position",
+    "initial_pose_a": "initial pose Yaw",
+    "initial_cov_xx": "initial covariance XX",
+    "initial_cov_yy": "initial covariance YY",
+    "initial_cov_aa": "initial covariance AA",
+}
+
+
 def read_initial_pose() -> InitialPose:
     """Read ``~initial_pose_*`` and ``~initial_cov_*``; NaN is ignored with a warning."""
     names = official_names(InitialPose)
     for name in names:
         value = rospy.get_param("~" + name, 0.0)
         if isinstance(value, float) and math.isnan(value):
-            rospy.logwarn("ignoring NAN in %s", name)
+            rospy.logwarn("ignoring NAN in %s", IN_MESSAGES[name])
             rospy.delete_param("~" + name)
     return read_settings(InitialPose, names, ignore=(*official_names(NodeSettings), RESTORE))
 

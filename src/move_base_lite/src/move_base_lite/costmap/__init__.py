@@ -7,7 +7,12 @@ from move_base_lite.costmap.costmap import LayeredCostmap
 from move_base_lite.costmap.costs import FREE, INSCRIBED, LETHAL, UNKNOWN, occupancy_of
 from move_base_lite.costmap.footprint import Footprint, footprint_from
 from move_base_lite.costmap.layer import CostmapPlacement, Layer, LayerContext, LayerSettings
-from move_base_lite.costmap.observation import Observation, observation_from_points, observation_from_scan
+from move_base_lite.costmap.observation import (
+    Observation,
+    observation_from_points,
+    observation_from_projected_scan,
+    observation_from_scan,
+)
 from move_base_lite.costmap.polygon import Polygon
 from move_base_lite.costmap.registry import LAYERS
 from move_base_lite.costmap.settings import CostmapSettings, NamedLayer, named_layers
@@ -40,6 +45,7 @@ __all__ = [
     "footprint_from",
     "named_layers",
     "observation_from_points",
+    "observation_from_projected_scan",
     "observation_from_scan",
     "occupancy_of",
 ]

@@ -125,3 +125,41 @@ def _rays(points_xyz, placement):
         directions[count, 1] = dy / length if length > 0.0 else 0.0
         count += 1
     return directions[:count], ranges[:count], heights[:count]
+
+
+def observation_from_projected_scan(
+    topic: str, scan: Scan, laser_in_base: np.ndarray, origin_xyz: np.ndarray
+) -> Observation:
+    """Convert the scan of a laser that is tilted, or whose beams begin elsewhere, to a costmap observation.
+
+    The end points are projected onto the floor and keep their heights (laser_geometry).
+
+    Args:
+        topic: Topic of the scan.
+        scan: The scan; its mounting pose is ignored.
+        laser_in_base: Pose of the laser in the base frame, z above the floor (4, 4).
+        origin_xyz: (3,) origin of the beams in the base frame, z above the floor [m].
+
+    Returns:
+        One beam for each of the scan, from the origin; NaN ranges where the scan has no valid range.
+    """
+    angles = scan.angle_min + scan.angle_increment * np.arange(len(scan.ranges))
+    reach = np.where(scan.hits, scan.ranges.astype(np.float64), scan.range_max)
+    ends_in_laser = np.column_stack((reach * np.cos(angles), reach * np.sin(angles), np.zeros(len(reach))))
+    ends = ends_in_laser @ laser_in_base[:3, :3].T + laser_in_base[:3, 3]
+    origin_xy = origin_xyz[:2]
+    offsets_xy = ends[:, :2] - origin_xy
+    ranges = np.where(scan.hits, np.hypot(offsets_xy[:, 0], offsets_xy[:, 1]), np.nan)
+    ranges[np.isposinf(scan.ranges)] = np.inf
+    offset = float(np.hypot(*(laser_in_base[:2, 3] - origin_xy)))
+    return Observation(
+        topic,
+        scan.stamp,
+        Pose2(float(origin_xy[0]), float(origin_xy[1])),
+        np.arctan2(offsets_xy[:, 1], offsets_xy[:, 0]),
+        ranges,
+        0.0,
+        scan.range_max + offset,
+        ends[:, 2],
+        float(origin_xyz[2]),
+    )

@@ -11,12 +11,15 @@ class StaticMap:
     """A map and the frame it lies in.
 
     Attributes:
-        grid: The map.
+        grid: The map; one whose origin is turned is resampled along the axes of the frame.
         frame: Frame of its coordinates; empty: the frame of the global costmap.
     """
 
     grid: OccupancyGrid
     frame: str = ""
+
+    def __post_init__(self):
+        object.__setattr__(self, "grid", self.grid.axis_aligned())
 
 
 class MapSource(NamedTuple):

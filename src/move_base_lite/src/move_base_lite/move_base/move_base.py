@@ -1,14 +1,14 @@
 """MoveBase: what the node move_base does between its messages and the Navigator."""
 
 from dataclasses import dataclass
-from functools import partial
-from typing import Callable, FrozenSet, Optional
+from typing import Callable, FrozenSet, Optional, Sequence
 
 from move_base_lite.config import NavigatorSettings
-from move_base_lite.costmap import Maps, MapSource, StaticMap, StaticMaps, observation_from_scan
+from move_base_lite.costmap import Maps, MapSource, StaticMap, StaticMaps
 from move_base_lite.errors import NavigationError, RobotLost
+from move_base_lite.move_base.observation_buffer import Measurement
 from move_base_lite.move_base.robot_poses import RobotPoses
-from move_base_lite.move_base.sensor_inputs import Measurement, SensorInputs
+from move_base_lite.move_base.sensor_inputs import SensorInputs
 from move_base_lite.navigator import Navigator
 from move_base_lite.navigator.decision import Decision, GoalOutcome, RecoveryTrigger, Status, with_reason
 from move_base_lite.navigator.inputs import NavigatorInputs, RobotState
@@ -25,11 +25,13 @@ class TickResult:
             robot stands.
         state: State of the robot; None without usable inputs.
         fault: Sensor that cannot be trusted, and why; None if there is none.
+        complaints: Descriptions of sensor data that could not be used.
     """
 
     decision: Decision
     state: Optional[RobotState] = None
     fault: Optional[str] = None
+    complaints: Sequence[str] = ()
 
 
 class MoveBase:
@@ -105,9 +107,7 @@ class MoveBase:
             scan: The scan, with the mounting pose of its laser.
             height: Height of the laser above the floor [m].
         """
-        topic = self._scan_topic
-        observe = partial(observation_from_scan, topic, scan, height)
-        self.inputs.add(Measurement(topic, scan.stamp, observe, scan))
+        self.inputs.add(Measurement(self._scan_topic, scan.stamp, lambda: scan, None, scan, height))
 
     def set_goal(self, goal_in_map: Pose2) -> None:
         """Set the goal, from the next tick on; it preempts a goal in progress.
@@ -210,7 +210,7 @@ class MoveBase:
             decision = self._navigator.tick(state, inputs)
         if fault is None:  # a robot that stands because of a fault is checked against the command before it
             self._commanded = decision.command or Twist2()
-        return TickResult(decision, state, fault)
+        return TickResult(decision, state, fault, self.inputs.complaints(now))
 
     def _wait(self, now: float, complaint: str) -> Decision:
         """Stand; abort the goal after ~sensor_patience."""

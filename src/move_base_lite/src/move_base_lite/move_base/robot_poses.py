@@ -2,7 +2,9 @@
 
 import math
 from collections import deque
-from typing import Deque, Optional, Protocol, Tuple
+from typing import Deque, Dict, Optional, Protocol, Sequence, Tuple
+
+import numpy as np
 
 from planar import Pose2
 
@@ -23,6 +25,35 @@ class RobotPoses(Protocol):
             The pose; None if it is not known at that time.
         """
 
+    def base_in_space(self, stamp: float) -> Optional[np.ndarray]:
+        """Return the pose of the base in the odometry frame with height, roll and pitch.
+
+        Args:
+            stamp: Time of the pose [s].
+
+        Returns:
+            Matrix (4, 4); None if it is not known at that time.
+        """
+
+    def frame_in_base(self, frame: str, stamp: float) -> Optional[np.ndarray]:
+        """Return the pose of any frame, such as that of a sensor, in the base frame.
+
+        Args:
+            frame: Name of the frame.
+            stamp: Time of the pose [s].
+
+        Returns:
+            Matrix (4, 4); None if it is not known at that time.
+        """
+
+    def missing_transform(self, frames: Sequence[str], stamp: float) -> str:
+        """Describe the first transform between the frames, base and odometry that is unknown at a stamp.
+
+        Args:
+            frames: Names of frames.
+            stamp: Time [s].
+        """
+
     def odom_in_map(self) -> Optional[Pose2]:
         """Return the latest pose of the odometry frame in the map; None if it is unknown."""
 
@@ -40,6 +71,7 @@ class PoseHistory:
     """Poses from odometry and localization in the same process."""
 
     def __init__(self) -> None:
+        self._mountings: Dict[str, np.ndarray] = {}
         self.reset()
 
     def reset(self) -> None:
@@ -55,6 +87,15 @@ class PoseHistory:
             base_in_odom: Pose of the base in the odometry frame.
         """
         self._odometry.append((stamp, base_in_odom))
+
+    def set_mounting(self, frame: str, frame_in_base: np.ndarray) -> None:
+        """Set the pose of a sensor.
+
+        Args:
+            frame: Name of the sensor's frame.
+            frame_in_base: Pose of the frame in the base frame (4, 4).
+        """
+        self._mountings[frame] = frame_in_base
 
     def set_odom_in_map(self, odom_in_map: Optional[Pose2], valid_until: float = math.inf) -> None:
         """Set the estimate of localization.
@@ -78,6 +119,17 @@ class PoseHistory:
                 break  # stamps increase, so all earlier ones are farther away
             nearest, base_in_odom = abs(stamp_of - stamp), known
         return base_in_odom
+
+    def base_in_space(self, stamp: float) -> Optional[np.ndarray]:
+        base_in_odom = self.base_in_odom(stamp)
+        return None if base_in_odom is None else base_in_odom.as_matrix()
+
+    def frame_in_base(self, frame: str, stamp: float) -> Optional[np.ndarray]:
+        return self._mountings.get(frame)
+
+    def missing_transform(self, frames: Sequence[str], stamp: float) -> str:
+        unknown = [frame for frame in frames if frame not in self._mountings]
+        return f"no mounting of {unknown[0]}" if unknown else "no odometry"
 
     def odom_in_map(self) -> Optional[Pose2]:
         return self._odom_in_map

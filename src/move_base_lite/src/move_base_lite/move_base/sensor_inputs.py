@@ -2,40 +2,22 @@
 
 import math
 from collections import deque
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, Callable, Deque, Dict, List, Optional
 
 from move_base_lite.config import NavigatorSettings
 from move_base_lite.costmap import Observation
 from move_base_lite.costmap.layers.obstacles import SourceSettings
+from move_base_lite.move_base.observation_buffer import Measurement, ObservationBuffer
 from move_base_lite.move_base.robot_poses import RobotPoses
 from move_base_lite.navigator.inputs import RobotState
 from move_base_lite.plausibility import SensorMonitor
 from planar import Pose2, Twist2
 
-# Messages of a source that wait for their transform, and inputs that wait for a tick.
-QUEUE_SIZE, MOST_WAITING = 5, 1000
+# Inputs that wait for a tick.
+MOST_WAITING = 1000
 # A sensor without messages for so long [s], which stopped about when localization did, may be the cause.
 SILENT_SECONDS = 2.0
-
-
-@dataclass(frozen=True, eq=False)
-class Measurement:
-    """One message of an observation source.
-
-    Attributes:
-        topic: Topic of the source, as in the settings.
-        stamp: Time of the measurement [s].
-        observe: Returns the observation from the robot's pose at that time; None as long as it is not known
-            how the sensor is mounted.
-        scan: Scan to check for plausibility: ``ranges``, ``range_min``, ``range_max`` and
-            ``angle_increment``; None for point clouds.
-    """
-
-    topic: str
-    stamp: float
-    observe: Callable[[], Optional[Observation]]
-    scan: Any = None
 
 
 @dataclass(frozen=True)
@@ -74,7 +56,7 @@ class SensorInputs:
     def reset(self) -> None:
         """Discard all inputs, since time has jumped back."""
         self._waiting: Deque[Any] = deque(maxlen=MOST_WAITING)
-        self._queues: Dict[str, Deque[Measurement]] = {}
+        self._buffers: Dict[str, ObservationBuffer] = {}
         self._twist, self._monitor = Twist2(), SensorMonitor()
 
     def update_settings(self, settings: NavigatorSettings) -> None:
@@ -114,10 +96,18 @@ class SensorInputs:
 
     def _check_measurement(self, measurement: Measurement) -> None:
         scan, source = measurement.scan, self.sources.get(measurement.topic)
-        if scan is not None and (source is None or source.marking):
+        buffer = self._buffer(measurement.topic)
+        if scan is not None and buffer.is_level and (source is None or source.marking):
             span = scan.angle_increment * (len(scan.ranges) - 1)
             self._monitor.add_scan(scan.ranges, scan.range_min, scan.range_max, span)
-        self._queues.setdefault(measurement.topic, deque(maxlen=QUEUE_SIZE)).append(measurement)
+        buffer.add(measurement)
+
+    def _buffer(self, topic: str) -> ObservationBuffer:
+        if topic not in self._buffers:
+            source = self.sources.get(topic)
+            sensor_frame = "" if source is None else source.sensor_frame
+            self._buffers[topic] = ObservationBuffer(self._poses, self._full_name(topic), sensor_frame)
+        return self._buffers[topic]
 
     def fault(self, now: float) -> Optional[str]:
         """Describe the sensor that contradicts the others or has stopped; None if there is none."""
@@ -156,25 +146,17 @@ class SensorInputs:
 
     def observations(self, state: RobotState) -> List[Observation]:
         """Return the latest new measurement of each source, as seen from the present pose."""
-        newest = (self._newest(queue, state) for queue in self._queues.values())
+        newest = (buffer.newest(state) for buffer in self._buffers.values())
         return [observation for observation in newest if observation is not None]
 
-    def _newest(self, queue: Deque[Measurement], state: RobotState) -> Optional[Observation]:
-        for measurement in reversed(tuple(queue)):
-            observation = self._observe(measurement, state)
-            if observation is not None:
-                while queue and queue[0].stamp <= measurement.stamp:
-                    queue.popleft()
-                return observation
-        return None
+    def complaints(self, now: float) -> List[str]:
+        """Describe sensor data that were dropped for want of a transform.
 
-    def _observe(self, measurement: Measurement, state: RobotState) -> Optional[Observation]:
-        """Return a measurement as seen from the present pose; None while its transform is unknown."""
-        observation, base_at_stamp = measurement.observe(), self._poses.base_in_odom(measurement.stamp)
-        if observation is None or base_at_stamp is None or measurement.stamp == state.stamp:
-            return observation if base_at_stamp is not None else None
-        moved = state.base_in_odom.inverse() @ base_at_stamp
-        return replace(observation, sensor_in_base=moved @ observation.sensor_in_base)
+        Args:
+            now: Time of the tick [s].
+        """
+        complaints = (buffer.complaint(now) for buffer in self._buffers.values())
+        return [complaint for complaint in complaints if complaint]
 
     def _silence_since(self, stamp: float, now: float) -> str:
         """Describe the sensor whose messages stopped when localization did; empty if there is none."""

@@ -1,5 +1,6 @@
 """Components of the Navigator: global planner, controller, costmaps and the tracker of moving obstacles."""
 
+from dataclasses import replace
 from typing import Any, Mapping, Sequence, Tuple
 
 import numpy as np
@@ -20,6 +21,9 @@ from move_base_lite.navigator.motion_prediction import predict_motion
 from move_base_lite.navigator.zones import Zones
 from move_base_lite.planning import GLOBAL_PLANNERS, PlanRequest
 from planar import Pose2, Twist2
+
+# Height up to which the ends of a tilted laser's beams may be on the floor [m].
+FLOOR_HEIGHT = 0.1
 
 
 class NavigatorComponents:
@@ -99,7 +103,15 @@ class NavigatorComponents:
         settings = self.settings.controller.tracker_settings
         if settings is None or observation.topic != self.settings.scan_topic:
             return observation
-        return self._obstacle_tracker.update(base_in_odom, observation, settings)
+        if np.ndim(observation.heights) == 0:
+            return self._obstacle_tracker.update(base_in_odom, observation, settings)
+        # The ends of a tilted laser's beams on the floor move with the robot.
+        above_floor = np.where(observation.heights > FLOOR_HEIGHT, observation.ranges, np.nan)
+        static = self._obstacle_tracker.update(
+            base_in_odom, replace(observation, ranges=above_floor), settings
+        )
+        is_moving = np.isnan(static.ranges) & ~np.isnan(above_floor)
+        return replace(observation, ranges=np.where(is_moving, np.nan, observation.ranges))
 
     def plan(self, start_in_map: Pose2, goal_in_map: Pose2, tolerance: float = 0.0) -> np.ndarray:
         """Plan a path between two poses in the map.

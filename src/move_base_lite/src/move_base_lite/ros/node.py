@@ -75,7 +75,7 @@ class MoveBaseNode:
         rospy.on_shutdown(self._on_shutdown)  # registered before the goal server, so that it runs first
         self._goals = GoalServer(self._map_frame, self._transforms, self._on_cancel)
         odom_topic = parameters.get("DWAPlannerROS", {}).get("odom_topic", "odom")
-        self._sensors = SensorBridge(self._move_base, self._transforms, odom_topic)
+        self._sensors = SensorBridge(self._move_base, odom_topic)
         self._tree = ReconfigureServers(parameters, self._change)
         self._await_inputs()
         self._step.every(self._period, self._tick, self._on_time_jump, reports=True)
@@ -118,6 +118,8 @@ class MoveBaseNode:
             self._accept_goal(now)
             result = self._move_base.tick(now.to_sec(), self._step.latency)
             self._diagnostics.publish(result.fault, now)
+            for complaint in result.complaints:
+                rospy.logwarn(complaint)
             self._publish_decision(now, result)
             if result.state is not None:
                 self._publish_state(now, result.state, self._move_base.navigator)

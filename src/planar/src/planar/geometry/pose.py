@@ -60,6 +60,13 @@ class Pose2:
         """Return ``[x, y, yaw]`` as float64 (3,)."""
         return np.array([self.x, self.y, self.yaw])
 
+    def as_matrix(self) -> np.ndarray:
+        """Return the pose in space, a homogeneous matrix (4, 4) with z 0."""
+        matrix = np.eye(4)
+        c, s = math.cos(self.yaw), math.sin(self.yaw)
+        matrix[:2, :2], matrix[:2, 3] = [[c, -s], [s, c]], (self.x, self.y)
+        return matrix
+
     @classmethod
     def from_array(cls, xyt) -> "Pose2":
         """Make a pose of an ``[x, y, yaw]`` triple."""

@@ -1,8 +1,9 @@
 """Map files: the YAML and image pair of map_server (interface of ROS 1 navigation 1.17)."""
 
 import io
+import re
 from pathlib import Path
-from typing import Iterator, Union
+from typing import Any, Iterator, Tuple, Union
 
 import numpy as np
 
@@ -16,6 +17,8 @@ from planar.geometry.pose import Pose2
 
 MODES = ("trinary", "scale", "raw")
 MAX_PIXELS = 100_000_000
+# Header of a PNM image; the group is the maximum of its values.
+PNM_HEADER = re.compile(rb"P[2356](?:(?:\s|#[^\n]*\n)+\d+){2}(?:\s|#[^\n]*\n)+(\d+)")
 # First bytes of a Git LFS pointer file.
 LFS_POINTER = b"version https://git-lfs"
 
@@ -82,14 +85,14 @@ def cells_from_image(
         MapImageError: If the image cannot be read.
     """
     pixels = _pixels(image_path)
-    channels = pixels if mode == "trinary" else pixels[:, :, :3]
+    channels = pixels if mode == "trinary" else pixels[:, :, :3]  # trinary: alpha is averaged in
     sums = np.flipud(channels.sum(axis=2, dtype=np.uint16))
     # A table over the possible sums, which are far fewer than the pixels.
     shade = np.arange(255 * channels.shape[2] + 1) / channels.shape[2]
     if negate:
         shade = 255.0 - shade
     if mode == "raw":
-        return np.rint(shade).astype(np.uint8).astype(np.int8)[sums]
+        return shade.astype(np.uint8).astype(np.int8)[sums]
     occupancy = (255.0 - shade) / 255.0
     meaning = np.full(occupancy.shape, UNKNOWN, dtype=np.int8)
     if mode == "scale" and occupied_thresh > free_thresh:
@@ -100,7 +103,7 @@ def cells_from_image(
     meaning[occupancy < free_thresh] = FREE
     cells = meaning[sums]
     if mode == "scale" and pixels.shape[2] == 4:
-        cells[(np.flipud(pixels[:, :, 3]) < 255) & ~is_certain[sums]] = UNKNOWN
+        cells[(np.flipud(pixels[:, :, 3]) == 0) & ~is_certain[sums]] = UNKNOWN
     return cells
 
 
@@ -113,16 +116,56 @@ def _pixels(image_path) -> np.ndarray:
         data = read_bytes(image_path)
         if data.startswith(LFS_POINTER):
             raise ValueError("a Git LFS pointer; run git lfs pull to get the image")
+        data, pnm_maximum = _with_full_range(data)
         with Image.open(io.BytesIO(data)) as image:
             if image.width * image.height > MAX_PIXELS:
                 raise ValueError(f"{image.width} x {image.height} pixels exceed the limit of {MAX_PIXELS}")
-            return np.asarray(image.convert("RGBA" if "A" in image.getbands() else "RGB"))
+            if len(image.getbands()) == 1 and image.mode not in ("1", "L", "P"):
+                return np.repeat(_shades(image)[:, :, None], 3, axis=2)
+            pixels = np.asarray(image.convert("RGBA" if "A" in image.getbands() else "RGB"))
+        return pixels if pnm_maximum == 255 else _scaled(pixels, pnm_maximum)
     except FileNotFoundError:
         raise MapImageError(f"{image_path}: no such map image") from None
     except UnidentifiedImageError:
         raise MapImageError(f"{image_path}: not a readable image (unknown format)") from None
     except Exception as error:  # errors of Pillow's readers have no common class
         raise MapImageError(f"{image_path}: not a readable image ({error})") from None
+
+
+def _with_full_range(data: bytes) -> Tuple[bytes, int]:
+    """Declare 255 as the maximum of a PNM image with less, which Pillow would round when it scales.
+
+    Args:
+        data: Image file.
+
+    Returns:
+        The file, and the maximum of its values; 255 for all other images.
+    """
+    header = PNM_HEADER.match(data)
+    maximum = int(header.group(1)) if header else 255
+    if header is None or not 0 < maximum < 255:
+        return data, 255
+    return data[: header.start(1)] + b"255" + data[header.end(1) :], maximum
+
+
+def _shades(image: Any) -> np.ndarray:
+    """Return the pixels of a grey image of more than 8 bits, scaled to uint8 (rows, cols).
+
+    Raises:
+        ValueError: The pixels are not of 16 bits.
+    """
+    values = np.asarray(image)
+    is_16_bit = image.mode.startswith("I;16") or (image.mode == "I" and image.format in ("PNG", "PPM"))
+    if not is_16_bit or values.min() < 0 or values.max() > 0xFFFF:
+        raise ValueError(f"pixels of mode {image.mode}; expected integers of up to 16 bits")
+    if image.format == "PNG":  # SDL_image uses the high byte of PNG, and scales TIFF
+        return (values.astype(np.uint32) >> 8).astype(np.uint8)
+    return _scaled(values, 0xFFFF)
+
+
+def _scaled(values: np.ndarray, maximum: int) -> np.ndarray:
+    """Scale values from 0 to a maximum to uint8, rounding down as SDL_image does."""
+    return (np.minimum(values, maximum).astype(np.uint32) * 255 // maximum).astype(np.uint8)
 
 
 def save_map(grid: Union[OccupancyGrid, BandedGrid], stem, occupied_at: int = 65, free_at: int = 25) -> Path:

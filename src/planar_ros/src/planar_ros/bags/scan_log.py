@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Callable, Deque, Iterator, Set, Union
 
 import numpy as np
+from genpy import Time
 
 from planar import PlanarError, Pose2, Scan
 from planar_ros.bags.bag_reader import TF, TF_STATIC, BagError, BagReader, RecordedMessage, absolute_name
@@ -124,9 +125,14 @@ class ScanLog:
         return (played.stamp - self._bag.start) / max(self._bag.end - self._bag.start, 1e-9)
 
     def _is_due(self, scan: RecordedMessage, now: float) -> bool:
-        latest = self._transforms.latest_stamp(self._odom, self._base)
-        has_odometry = latest is not None and latest >= scan.message.header.stamp
-        return has_odometry or now - scan.stamp > _MAX_ODOM_LAG
+        stamp, laser = scan.message.header.stamp, frame_name(scan.message.header.frame_id)
+        odometry, mounting = (
+            self._transforms.latest_stamp(self._odom, self._base),
+            self._transforms.latest_stamp(self._base, laser),
+        )
+        has_odometry = odometry is not None and odometry >= stamp
+        has_mounting = mounting is not None and (mounting == Time(0) or mounting >= stamp)
+        return has_odometry and has_mounting or now - scan.stamp > _MAX_ODOM_LAG
 
     def _with_odometry(self, played: RecordedMessage) -> Iterator[LoggedScan]:
         message, position = played.message, self._position(played)
@@ -149,7 +155,7 @@ class ScanLog:
             base_in_odom = self._last_in_odom
         self._last_in_odom = base_in_odom
         laser = frame_name(message.header.frame_id)
-        mounting = self._transforms.mounting(self._base, laser)
+        mounting = self._transforms.mounting(self._base, laser, message.header.stamp)
         if mounting is None:
             what = f"no transform {self._base} -> {laser},"
             self._warn_once(what, f"assuming the laser at the origin of {self._base}", stamp, position)

@@ -96,9 +96,18 @@ class TransformLog:
             transform = self._lookup(target, source, Time(0))
         return None if transform is None else self._pose_of(transform)
 
-    def mounting(self, base: str, sensor: str) -> Optional[Tuple[Pose2, bool]]:
-        """Return a sensor's pose in the base frame and whether it is mounted upside down; None if unknown."""
-        transform = self._lookup(base, sensor, Time(0))
+    def mounting(self, base: str, sensor: str, stamp) -> Optional[Tuple[Pose2, bool]]:
+        """Return how a sensor is mounted at a stamp, or the latest known way.
+
+        Args:
+            base: Frame of the robot.
+            sensor: Frame of the sensor.
+            stamp: Time of the pose.
+
+        Returns:
+            The sensor's pose in the base frame and whether it is upside down; None if it is unknown.
+        """
+        transform = self._lookup(base, sensor, stamp) or self._lookup(base, sensor, Time(0))
         pose = None if transform is None else self._pose_of(transform)
         if transform is None or pose is None:
             return None

@@ -2,7 +2,7 @@
 
 import threading
 import traceback
-from typing import Callable, Dict, Tuple
+from typing import Callable, Dict
 
 import rospy
 from tf2_msgs.msg import TFMessage
@@ -51,7 +51,6 @@ class ScanQueue:
         self._waiting: Dict[int, LaserScanArrays] = {}
         self._received = 0
         self._is_ending = False
-        self._mountings: Dict[str, Tuple[Pose2, bool]] = {}
         self._newest_stamp = rospy.Time(0)
         self._condition = threading.Condition()
         self._wake_count = 0
@@ -78,7 +77,6 @@ class ScanQueue:
         """Change the frames of odometry and of the base."""
         with self._condition:
             self._odom_frame, self._base_frame = odom_frame, base_frame
-            self._mountings.clear()
 
     def add(self, message) -> None:
         """Add a scan; waiting scans and transforms are cleared if its stamp has jumped back."""
@@ -142,20 +140,27 @@ class ScanQueue:
         """Handle or skip a scan; return False if it has to wait."""
         stamp, frame = message.header.stamp, frame_name(message.header.frame_id)
         base_in_odom = self._transforms.lookup(self._odom_frame, self._base_frame, stamp)
-        mounting = self._mountings.get(frame) or self._transforms.mounting(self._base_frame, frame)
+        mounting = self._transforms.mounting(self._base_frame, frame, stamp)
         if base_in_odom is not None and mounting is not None:
-            self._mountings[frame] = mounting
             try:
                 self._handle(message, scan_from_msg(message, *mounting), base_in_odom)
             except PlanarError as error:
                 self._skip(message, str(error))
             return True
-        latest = self._transforms.latest_stamp(self._odom_frame, self._base_frame)
-        if base_in_odom is None and latest is not None and latest > stamp:
-            self._skip(message, f"{self._odom_frame} -> {self._base_frame} is not known for its stamp")
-            return True
+        for known, parent, child in (
+            (base_in_odom, self._odom_frame, self._base_frame),
+            (mounting, self._base_frame, frame),
+        ):
+            if known is None and self._is_past(parent, child, stamp):
+                self._skip(message, f"{parent} -> {child} is not known for its stamp")
+                return True
         if is_late:
             missing = self._odom_frame if base_in_odom is None else frame
             self._skip(message, f"no transform between {missing} and {self._base_frame} came in time")
             return True
         return False
+
+    def _is_past(self, parent, child, stamp):
+        """Whether newer transforms are known, so that the one at ``stamp`` will not arrive any more."""
+        latest = self._transforms.latest_stamp(parent, child)
+        return latest is not None and latest > stamp

@@ -113,28 +113,40 @@ class Transforms:
             The pose of ``source`` in ``target``; None if it is unknown or out of range.
         """
         transform = self._lookup(target, source, stamp)
-        if transform is None:
-            return None
-        try:
-            return pose2_of(transform.translation, transform.rotation)
-        except MessageError as error:
-            rospy.logwarn_throttle(WARN_SECONDS, f"tf: {target} -> {source} ignored: {error}")
-            return None
+        return None if transform is None else self._pose_of(transform, target, source)
 
-    def mounting(self, base_frame: str, sensor_frame: str) -> Optional[Tuple[Pose2, bool]]:
-        """Return a sensor's pose in the base frame and whether it is mounted upside down; None if unknown."""
-        pose, transform = (
-            self.lookup(base_frame, sensor_frame),
-            self._lookup(base_frame, sensor_frame, None),
-        )
-        if pose is None or transform is None:
+    def mounting(
+        self, base_frame: str, sensor_frame: str, stamp: Optional[rospy.Time] = None
+    ) -> Optional[Tuple[Pose2, bool]]:
+        """Look up how a sensor is mounted.
+
+        Args:
+            base_frame: Frame of the robot.
+            sensor_frame: Frame of the sensor.
+            stamp: Time; None for the latest.
+
+        Returns:
+            The sensor's pose in the base frame and whether it is upside down; None if it is unknown.
+        """
+        transform = self._lookup(base_frame, sensor_frame, stamp)
+        pose = None if transform is None else self._pose_of(transform, base_frame, sensor_frame)
+        if transform is None or pose is None:
             return None
         q = transform.rotation
         return pose, 1.0 - 2.0 * (q.x * q.x + q.y * q.y) < 0.0
 
-    def matrix(self, target: str, source: str) -> Optional[np.ndarray]:
-        """Return the latest pose of ``source`` in ``target`` in space, a matrix (4, 4); None if unknown."""
-        transform = self._lookup(target, source, None)
+    def matrix(self, target: str, source: str, stamp: Optional[rospy.Time] = None) -> Optional[np.ndarray]:
+        """Look up a frame's pose in space.
+
+        Args:
+            target: Frame in which the pose is given.
+            source: Frame whose pose is looked up.
+            stamp: Time of the pose; None for the latest.
+
+        Returns:
+            The pose of ``source`` in ``target``, a matrix (4, 4); None if it is unknown.
+        """
+        transform = self._lookup(target, source, stamp)
         if transform is None:
             return None
         q, at = transform.rotation, transform.translation
@@ -142,6 +154,14 @@ class Transforms:
         matrix[:3, :3] = _rotation(q.x, q.y, q.z, q.w)
         matrix[:3, 3] = at.x, at.y, at.z
         return matrix
+
+    def why_unknown(self, target: str, source: str, stamp: rospy.Time) -> str:
+        """Return tf2's reason why a transform is unknown at a stamp; empty if it is known."""
+        try:
+            self.buffer.lookup_transform(frame_name(target), frame_name(source), stamp)
+        except tf2_ros.TransformException as error:
+            return str(error)
+        return ""
 
     def latest_stamp(self, target: str, source: str) -> Optional[rospy.Time]:
         """Return the newest time at which the transform is known; None if it is unknown."""
@@ -161,6 +181,13 @@ class Transforms:
     def clear(self) -> None:
         """Discard all transforms but the static ones, as after time has jumped back."""
         self._filter.clear()
+
+    def _pose_of(self, transform, target, source):
+        try:
+            return pose2_of(transform.translation, transform.rotation)
+        except MessageError as error:
+            rospy.logwarn_throttle(WARN_SECONDS, f"tf: {target} -> {source} ignored: {error}")
+            return None
 
     def _lookup(self, target, source, stamp):
         if stamp is not None and not is_stamp(stamp):

@@ -1,7 +1,5 @@
 """Checks of the node's input, which log throttled warnings."""
 
-from typing import Dict
-
 import rospy
 
 from planar_ros.messages.conversion import frame_name
@@ -27,25 +25,23 @@ class LaserMountingCheck:
         """
         self._transforms = transforms
         self._base_frame = base_frame
-        self._heights: Dict[str, float] = {}
 
-    def is_planar(self, laser_frame: str) -> bool:
+    def is_planar(self, laser_frame: str, stamp: rospy.Time) -> bool:
         """Check whether the laser's axis points straight up or down; log a warning if not.
 
         Args:
             laser_frame: Frame of the scan.
+            stamp: Stamp of the scan.
         """
-        if laser_frame not in self._heights:
-            mounting = self._transforms.matrix(self._base_frame, laser_frame)
-            self._heights[laser_frame] = 1.0 if mounting is None else float(mounting[2, 2])
-        height = self._heights[laser_frame]
+        mounting = self._transforms.matrix(self._base_frame, laser_frame, stamp)
+        height = 1.0 if mounting is None else float(mounting[2, 2])
         if abs(abs(height) - 1.0) <= PLANAR_TOLERANCE:
             return True
         rospy.logwarn_throttle(
             WARNING_SECONDS,
-            "laser %s has to be mounted planar: the z coordinate of its axis has to be 1 or -1, not %.5f",
-            frame_name(laser_frame),
+            "Laser has to be mounted planar! Z-coordinate has to be 1 or -1, but gave: %.5f (frame %s)",
             height,
+            frame_name(laser_frame),
         )
         return False
 

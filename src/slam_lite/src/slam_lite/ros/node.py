@@ -80,18 +80,19 @@ class SlamNode:
     def _on_scan(self, message, scan, base_in_odom):
         self._scan_count += 1
         due = (self._scan_count - 1) % self._settings.throttle_scans == 0
-        if due and not self._is_paused and self._mounting_check.is_planar(message.header.frame_id):
+        header = message.header
+        if due and not self._is_paused and self._mounting_check.is_planar(header.frame_id, header.stamp):
             update = self._mapper.insert(base_in_odom, scan)
             if update is not None:
                 self._odometry_check.update(update.odometry_chi_square)
             self._maps.on_scan(scan.stamp)
             if self._checkpointer is not None:
                 self._checkpointer.on_scan(scan.stamp)
-        self._step.report(message.header.stamp)
+        self._step.report(header.stamp)
 
     def _on_skipped_scan(self, message, reason):
-        settings = self._settings
-        mounting = self._transforms.mounting(settings.base_frame, message.header.frame_id)
+        settings, header = self._settings, message.header
+        mounting = self._transforms.mounting(settings.base_frame, header.frame_id, header.stamp)
         if mounting is not None and not self._has_odometry():
             rospy.logwarn_throttle(
                 WARNING_SECONDS,
@@ -105,7 +106,7 @@ class SlamNode:
             except PlanarError as error:
                 reason = str(error)
         rospy.logwarn_throttle(WARNING_SECONDS, "skipping a scan: %s", reason)
-        self._step.report(message.header.stamp)
+        self._step.report(header.stamp)
 
     def _on_pause(self, request):
         self._is_paused = request.data

@@ -1,8 +1,9 @@
 """Poses of the robot from tf."""
 
 import math
-from typing import Optional
+from typing import Callable, Optional, Sequence, TypeVar
 
+import numpy as np
 import rospy
 
 from planar import Pose2
@@ -11,6 +12,7 @@ from planar_ros.messages.transforms import Transforms
 
 # A stamp in seconds since 1970 is exact to so many nanoseconds only.
 STAMP_ERROR = rospy.Duration(0, 1000)
+T = TypeVar("T")
 
 
 class TfPoses:
@@ -30,13 +32,20 @@ class TfPoses:
     def base_in_odom(self, stamp: Optional[float] = None) -> Optional[Pose2]:
         if stamp is None:
             return self._transforms.lookup(self._odom, self._base)
-        time = time_of(stamp)
-        pose = self._transforms.lookup(self._odom, self._base, time)
-        if pose is None:
-            latest = self._transforms.latest_stamp(self._odom, self._base)
-            if latest is not None and rospy.Duration(0) < time - latest < STAMP_ERROR:
-                pose = self._transforms.lookup(self._odom, self._base, latest)
-        return pose
+        return self._at(stamp, self._transforms.lookup, self._odom, self._base)
+
+    def base_in_space(self, stamp: float) -> Optional[np.ndarray]:
+        return self._at(stamp, self._transforms.matrix, self._odom, self._base)
+
+    def frame_in_base(self, frame: str, stamp: float) -> Optional[np.ndarray]:
+        return self._at(stamp, self._transforms.matrix, self._base, frame)
+
+    def missing_transform(self, frames: Sequence[str], stamp: float) -> str:
+        for parent, child in [(self._odom, self._base), *((self._base, frame) for frame in frames)]:
+            reason = self._transforms.why_unknown(parent, child, time_of(stamp))
+            if reason:
+                return f"no transform {parent} -> {child} at their stamps; is it published? ({reason})"
+        return "their transforms came too late"
 
     def odom_in_map(self) -> Optional[Pose2]:
         return self._transforms.lookup(self._map, self._odom)
@@ -49,6 +58,16 @@ class TfPoses:
 
     def reset(self) -> None:
         self._transforms.clear()
+
+    def _at(self, stamp: float, lookup: Callable[..., Optional[T]], parent: str, child: str) -> Optional[T]:
+        """Look up a pose at a stamp that seconds may not represent exactly."""
+        time = time_of(stamp)
+        pose = lookup(parent, child, time)
+        if pose is None:
+            latest = self._transforms.latest_stamp(parent, child)
+            if latest is not None and rospy.Duration(0) < time - latest < STAMP_ERROR:
+                pose = lookup(parent, child, latest)
+        return pose
 
     def _latest(self, parent: str, child: str) -> Optional[float]:
         """Return the newest stamp of a transform; infinity if it is static."""

@@ -1,0 +1,20 @@
+"""Conformance of our map_server and map_saver to map_server 1.17: one test a statement (``Case.source``)."""
+
+import pytest
+
+pytest.importorskip("rospy")
+
+from map_server_cases import CASES  # noqa: E402
+from map_server_rig import run_ours  # noqa: E402
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+def test_our_map_server_keeps_the_statement(case):
+    """The statement of ``Case.source``, or the stated difference."""
+    assert run_ours(case.input) == case.expected, case.source
+
+
+def test_each_difference_from_the_official_node_has_a_reason():
+    assert [
+        case.name for case in CASES if (case.expected_of_official != case.expected) != bool(case.reason)
+    ] == []
