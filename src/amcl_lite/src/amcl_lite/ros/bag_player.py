@@ -64,7 +64,7 @@ def play_bag(path: Path, transforms: Transforms, scans: ScanQueue, scan_period: 
     scan_publisher = rospy.Publisher(scans.topic, LaserScanArrays, queue_size=100)
     tf_publisher = rospy.Publisher("/tf", TFMessage, queue_size=100)
     bag = BagReader(path)
-    transforms.add(TFMessage(bag.first_static_transforms()), is_static=True)
+    transforms.add(TFMessage(list(read_tree(bag, [TF_STATIC]).first.values())), is_static=True)
     for topic, message, _ in bag.messages([scan_topic, TF, TF_STATIC]):
         if rospy.is_shutdown():
             return
