@@ -41,8 +41,9 @@ class RecordedMessage(NamedTuple):
 class BagReader:
     """Read-only view of a bag; a truncated bag is read up to its last complete chunk.
 
-    Topic names are absolute ("/scan"), even if they were recorded without the slash. Messages are in the order
-    of the time at which they were recorded, also if the chunks of the file are not, as after merging bags.
+    Topic names are absolute ("/scan"), even if they were recorded without the slash. Messages are in the
+    order of the time at which they were recorded, also if the chunks of the file are not, as after merging
+    bags.
 
     Args:
         path: The bag file; it is never modified.

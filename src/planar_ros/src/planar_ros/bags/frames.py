@@ -122,8 +122,8 @@ def find_frames(source: MessageSource, odom: str, base: str, laser: str) -> BagF
     if len(candidates) > 1:
         found = ", ".join(f"{parent} -> {child}" for parent, child in candidates)
         raise BagError(
-            f"no transform {odom} -> {base}, and several frames move: {found}; set the frames of odometry and "
-            "of the base"
+            f"no transform {odom} -> {base}, and several frames move: {found}; set the frames of odometry "
+            "and of the base"
         )
     parent, child = candidates[0]
     found_base = base if child in tree.frames_from(base) else child

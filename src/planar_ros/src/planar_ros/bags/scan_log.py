@@ -58,7 +58,7 @@ class ScanLog:
     Args:
         path: The bag.
         scan_topic: Topic of the scans (sensor_msgs/LaserScan).
-        base_frame: Frame of the robot's base; if it does not move in the bag, the one frame that does is used.
+        base_frame: Frame of the robot's base; if it does not move in the bag, the frame that does is used.
         odom_frame: Frame of odometry; likewise.
         warn: Called with a text for people, once for each kind of missing, invalid or unordered data.
 
