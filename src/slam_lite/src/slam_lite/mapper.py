@@ -163,6 +163,11 @@ class Mapper:
         """Number of loop closures in the graph."""
         return int(self._back_end.edges.is_loop.sum())
 
+    @property
+    def has_obstacles(self) -> bool:
+        """Whether any keyframe has a reading that marks an obstacle."""
+        return any(beams.marks.any() for beams in self._beams)
+
     def evidence(self) -> Evidence:
         """Return the input of a SessionRenderer: the beams of all keyframes and their present poses."""
         older = int(np.searchsorted(self._sessions, self._session))

@@ -5,7 +5,7 @@ import math
 from collections import deque
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Callable, Deque, Iterator, Set, Tuple, Union
+from typing import Callable, Deque, Dict, Iterator, Set, Tuple, Union
 
 import numpy as np
 
@@ -94,6 +94,21 @@ class ScanLog:
         self._last_in_odom = Pose2()
         self._last_stamp = -math.inf
         self._warned: Set[str] = set()
+        # Frames of the lasers so far, in order, and those whose mounting is unknown.
+        self._lasers: Dict[str, None] = {}
+        self._unmounted: Set[str] = set()
+
+    def __str__(self) -> str:
+        """What was taken for what, for messages to people."""
+        frames = self.frames
+        odometry = f"odometry {frames.odom} -> {frames.base}" if frames.has_odometry else "no odometry"
+        lasers = ", ".join(
+            name
+            if name not in self._unmounted
+            else f"{name}, taken for mounted at the origin of {frames.base}"
+            for name in self._lasers
+        )
+        return f"scans of {self._scan_topic} ({lasers or 'none usable'}), {odometry}"
 
     def truth(self, topic: str = "base_pose_ground_truth") -> np.ndarray:
         """Return the ground truth in the bag.
@@ -177,6 +192,7 @@ class ScanLog:
         except PlanarError as error:
             self._warn_once("skipping a scan", f"({error})", stamp, position)
             return
+        self._lasers[laser] = None
         yield LoggedScan(scan, laser, base_in_odom, position)
 
     def _odometry_at(self, stamp, position: float) -> Pose2:
@@ -199,6 +215,7 @@ class ScanLog:
             mounting = self._transforms.mounting(base, laser, stamp)
         if mounting is not None:
             return mounting
+        self._unmounted.add(laser)
         details = f"assuming the laser at the origin of {base}"
         self._warn_once(f"no transform {base} -> {laser},", details, stamp.to_sec(), position)
         return Pose2(), False
