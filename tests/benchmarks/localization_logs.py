@@ -25,7 +25,7 @@ from planar import OccupancyGrid, Pose2, wrap
 from planar_ros.bags.scan_log import LoggedScan, ScanLog
 from slam_lite.config import MapperSettings
 from slam_lite.mapper import Mapper, ranges_of
-from slam_lite.no_return import NoReturnDetector
+from planar.geometry.no_return import NoReturnDetector
 from slam_lite.rendering import Evidence, beams_of, render_in_bands
 from slam_lite.scan_trajectory import ScanTrajectory
 

@@ -30,12 +30,15 @@ from amcl_lite.sensor.scan_matching import match_scan
 from planar import OccupancyGrid, Pose2, Scan, grid_from_picture
 from planar.deprecation import renamed_method
 from planar.geometry.limits import MAX_COORDINATE, is_within
+from planar.geometry.no_return import NoReturnDetector
 
 # Share of the particles of a lost robot that is drawn at poses where the scan fits the map.
 _RECOVERY_SHARE = 0.3
 # Share that is drawn around the scan matching result if the scan fits and the robot is not lost: particles
 # drawn by weight alone lag behind a constant odometry bias.
 _MATCHED_SHARE = 0.1
+# Distance from the last update from which on a scan is made at another place [m].
+_ELSEWHERE = 0.1
 
 
 @dataclass(frozen=True)
@@ -80,6 +83,7 @@ class Localizer:
         self._update_policy, self._updates = UpdatePolicy(), 0
         self._covariance = np.zeros((3, 3))
         self._quality: Optional[ScanQuality] = None
+        self._no_return = NoReturnDetector()
         self._configure(settings)
         self.set_pose(InitialPose().pose, InitialPose().covariance)
 
@@ -185,10 +189,12 @@ class Localizer:
         """
         if not base_in_odom.is_in_range():
             raise LocalizationError("the odometry pose is not finite or out of range")
+        scan = self._no_return.limited(scan)
         beams = evenly_spaced_beams(scan, self._settings)
         self._base_in_odom = base_in_odom
         estimate = None
         if self._update_policy.is_due(base_in_odom, laser, scan.stamp, self._settings):
+            self._learn_no_return(base_in_odom, scan)
             self._move(base_in_odom)  # first: a motion whose prediction fails is repeated with the next scan
             self._update_policy.record_update(base_in_odom, laser)
             self._weigh(beams)
@@ -229,6 +235,13 @@ class Localizer:
         self._matched_spread: Optional[np.ndarray] = None
         self._estimated_at: Optional[Pose2] = None
         self._confirmed: Optional[ConfirmedPose] = None
+
+    def _learn_no_return(self, base_in_odom: Pose2, scan: Scan) -> None:
+        """Learn from scans made at different places, between which no wall stays at the same distance."""
+        base_before = self._update_policy.updated_at
+        is_elsewhere = base_before is None or base_before.distance_to(base_in_odom) > _ELSEWHERE
+        if is_elsewhere and not self._settings.strict_compat:
+            self._no_return.add(scan.ranges)
 
     def _move(self, base_now: Pose2) -> None:
         base_before = self._update_policy.updated_at
