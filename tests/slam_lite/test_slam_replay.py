@@ -30,7 +30,16 @@ def base_at(i: int) -> Pose2:
     return circle(0.05 * i)
 
 
-def write_bag(path, scans=True, transforms=True, back_at=None, back_by=0.5):
+def write_bag(
+    path,
+    scans=True,
+    transforms=True,
+    back_at=None,
+    back_by=0.5,
+    range_max=20.0,
+    base="base_link",
+    at=base_at,
+):
     """A bag of a drive round the room; at scan ``back_at`` the stamp goes back by so many seconds."""
     grid = room()
     angles = np.linspace(-math.pi / 2.0, math.pi / 2.0, 181)
@@ -38,16 +47,16 @@ def write_bag(path, scans=True, transforms=True, back_at=None, back_by=0.5):
         for i in range(SCANS):
             recorded = rospy.Time.from_sec(START + PERIOD * i)
             if transforms:
-                odom = transform_msg(base_at(i), "odom", "base_link", recorded)
-                laser = transform_msg(LASER_IN_BASE, "base_link", "laser", recorded)
+                odom = transform_msg(at(i), "odom", base, recorded)
+                laser = transform_msg(LASER_IN_BASE, base, "laser", recorded)
                 bag.write("/tf", TFMessage([odom, laser]), recorded)
             if scans:
                 scan = LaserScan()
                 scan.header.frame_id = "laser"
                 scan.header.stamp = recorded - rospy.Duration(back_by if i == back_at else 0.0)
                 scan.angle_min, scan.angle_increment = angles[0], angles[1] - angles[0]
-                scan.range_min, scan.range_max = 0.1, 20.0
-                scan.ranges = cast_rays(grid, base_at(i) @ LASER_IN_BASE, angles, 20.0).tolist()
+                scan.range_min, scan.range_max = 0.1, range_max
+                scan.ranges = cast_rays(grid, at(i) @ LASER_IN_BASE, angles, 20.0).tolist()
                 bag.write("/scan", scan, recorded)
     return path
 
@@ -104,8 +113,33 @@ class SlamReplayTest(unittest.TestCase):
     def test_a_bag_without_scans_is_an_error_that_names_its_topics(self):
         write_bag(self.bag, scans=False)
         code, text = self.replay()
-        self.assertEqual(code, 2)
+        self.assertEqual(code, 1)
         self.assertIn(f"error: {self.bag}: no scans on /scan; topics: /tf\n", text)
+
+    def test_a_scan_without_a_valid_reading_is_no_map(self):
+        write_bag(self.bag, range_max=0.0)
+        code, text = self.replay()
+        self.assertEqual(code, 1)
+        self.assertIn(f"error: {self.bag}: no reading on /scan is valid", text)
+        self.assertFalse(self.map.with_suffix(".pgm").exists())
+
+    def test_a_robot_that_does_not_move_gives_no_useful_map(self):
+        write_bag(self.bag, at=lambda i: base_at(0))
+        code, text = self.replay()
+        self.assertEqual(code, 1)
+        self.assertIn(f"warning: {self.bag}: the robot did not move", text)
+
+    def test_the_frames_that_are_used_are_printed(self):
+        write_bag(self.bag, base="base_footprint")
+        code, text = self.replay()
+        self.assertEqual(code, 0)
+        self.assertIn(
+            f"warning: {self.bag}: odometry is odom -> base_footprint, as no transform odom -> base_link was "
+            "recorded\n",
+            text,
+        )
+        self.assertIn("scans of /scan (laser), odometry odom -> base_footprint\n", text)
+        self.assert_mapped()
 
     def test_a_bag_without_transforms_is_mapped_from_the_scans_with_a_warning(self):
         write_bag(self.bag, transforms=False)

@@ -239,6 +239,22 @@ def test_a_robot_that_is_carried_away_while_it_stands_finds_itself_without_a_mot
     assert localizer.updates == settled, "scans that fit are not worked in while the robot stands"
 
 
+@pytest.mark.parametrize("length", [1.05, 1.95])
+@pytest.mark.parametrize("seed", range(3))
+def test_a_robot_whose_scans_are_metres_apart_is_tracked_with_the_defaults(length, seed):
+    """The default noise grows with the square of the step."""
+    toy = Toy(START, seed)
+    localizer = started(toy, LocalizerSettings(), seed)
+    per_scan, errors = round(length / 0.15), []
+    for i, step in enumerate(THROUGH_ALL_ROOMS, 1):
+        if i % per_scan == 0:
+            toy.stamp += 2.0
+            errors.append(tracking_errors(toy, localizer, [step])[0, 0])
+        else:
+            toy.move(step)
+    assert max(errors) < 0.5
+
+
 def test_without_recovery_a_kidnapped_robot_stays_lost():
     toy = Toy(START)
     localizer = started(toy, replace(TURTLEBOT, recover_when_lost=False))

@@ -195,3 +195,20 @@ def test_no_wall_is_drawn_where_no_beam_ended(office):
     grid = mapper.grid()
     distances = np.hypot(*(grid.points_of(np.argwhere(grid.cells == OCCUPIED)) - [2.0, 2.0]).T)
     assert distances.max() < 1.05
+
+
+def test_circles_of_readings_without_return_are_removed_once_the_constant_is_known(office):
+    """It is known after some 200 readings; keyframes and maps from before have them as obstacles."""
+    mapper, renderer = Mapper(), SessionRenderer(0.05, 0.25)
+    farthest = []
+    for observation in office.drive(laps=0.3, range_max=80.0):
+        ranges = observation.scan.ranges.copy()
+        ranges[:20] = 79.9
+        mapper.insert(observation.base_in_odom, dataclasses.replace(observation.scan, ranges=ranges))
+        renderer.update(mapper.evidence())
+        rows, cols = np.nonzero(renderer.grid().cells == OCCUPIED)
+        farthest.append(0.05 * max(np.ptp(rows), np.ptp(cols)))
+    assert max(farthest) > 60.0
+    assert farthest[-1] < 20.0
+    assert np.array_equal(renderer.grid().cells, mapper.grid().cells)
+    assert all(np.abs(cloud.points_xy).max() < 20.0 for cloud in mapper.state().clouds)

@@ -94,9 +94,15 @@ class Player:
                 return
         raise RuntimeError("the node does not answer")
 
-    def show(self, observation: Observation, patience: float = ANSWER_SECONDS) -> Optional[Pose2]:
-        """Publish an observation, 0.1 s after the last one; return odom in map, or None without an answer."""
-        self._now += 0.1
+    def show(
+        self, observation: Observation, patience: float = ANSWER_SECONDS, period: float = 0.1
+    ) -> Optional[Pose2]:
+        """Publish an observation, ``period`` after the last one.
+
+        Returns:
+            Odometry frame in the map; None without an answer.
+        """
+        self._now += period
         stamp = rospy.Time.from_sec(round(self._now, 3))
         key = (stamp + rospy.Duration(TOLERANCE)).to_nsec()
         self._tick()

@@ -22,19 +22,23 @@ from amcl_lite.filter.statistics import best_cluster, mean_and_covariance
 from amcl_lite.motion.motion_model import motion_model_of
 from amcl_lite.motion.update_policy import UpdatePolicy
 from amcl_lite.recovery.hypotheses import find_hypotheses
-from amcl_lite.recovery.quality import LostDetector, ScanQuality, scan_quality
+from amcl_lite.recovery.pose_search import ConfirmedPose, PoseSearch
+from amcl_lite.recovery.quality import LostDetector, ScanQuality
 from amcl_lite.sensor.beams import Beams, all_beams, evenly_spaced_beams
 from amcl_lite.sensor.scan_likelihood import ScanLikelihood
 from amcl_lite.sensor.scan_matching import match_scan
 from planar import OccupancyGrid, Pose2, Scan, grid_from_picture
 from planar.deprecation import renamed_method
 from planar.geometry.limits import MAX_COORDINATE, is_within
+from planar.geometry.no_return import NoReturnDetector
 
 # Share of the particles of a lost robot that is drawn at poses where the scan fits the map.
 _RECOVERY_SHARE = 0.3
 # Share that is drawn around the scan matching result if the scan fits and the robot is not lost: particles
 # drawn by weight alone lag behind a constant odometry bias.
 _MATCHED_SHARE = 0.1
+# Distance from the last update from which on a scan is made at another place [m].
+_ELSEWHERE = 0.1
 
 
 @dataclass(frozen=True)
@@ -79,6 +83,7 @@ class Localizer:
         self._update_policy, self._updates = UpdatePolicy(), 0
         self._covariance = np.zeros((3, 3))
         self._quality: Optional[ScanQuality] = None
+        self._no_return = NoReturnDetector()
         self._configure(settings)
         self.set_pose(InitialPose().pose, InitialPose().covariance)
 
@@ -184,16 +189,18 @@ class Localizer:
         """
         if not base_in_odom.is_in_range():
             raise LocalizationError("the odometry pose is not finite or out of range")
+        scan = self._no_return.limited(scan)
         beams = evenly_spaced_beams(scan, self._settings)
         self._base_in_odom = base_in_odom
         estimate = None
         if self._update_policy.is_due(base_in_odom, laser, scan.stamp, self._settings):
+            self._learn_no_return(base_in_odom, scan)
             self._move(base_in_odom)  # first: a motion whose prediction fails is repeated with the next scan
             self._update_policy.record_update(base_in_odom, laser)
             self._weigh(beams)
             is_resampled = self._resample_if_due(beams)
             if is_resampled or self._updates == 1:
-                estimate = self._estimate(base_in_odom, scan)
+                estimate = self._estimate(base_in_odom, scan, beams)
         self._evaluate_fit(base_in_odom, beams, scan.stamp)
         return estimate
 
@@ -203,6 +210,7 @@ class Localizer:
     def _configure(self, settings: LocalizerSettings) -> None:
         likelihood, motion = ScanLikelihood(self._grid, settings), motion_model_of(settings)
         self._settings, self._likelihood, self._motion = settings, likelihood, motion
+        self._search = PoseSearch(likelihood.field, self._grid)
 
     def _start_around(self, base_in_map: Pose2, covariance: np.ndarray) -> None:
         count = self._settings.max_particles
@@ -225,6 +233,15 @@ class Localizer:
         self._update_policy = UpdatePolicy()
         self._updates = 0
         self._matched_spread: Optional[np.ndarray] = None
+        self._estimated_at: Optional[Pose2] = None
+        self._confirmed: Optional[ConfirmedPose] = None
+
+    def _learn_no_return(self, base_in_odom: Pose2, scan: Scan) -> None:
+        """Learn from scans made at different places, between which no wall stays at the same distance."""
+        base_before = self._update_policy.updated_at
+        is_elsewhere = base_before is None or base_before.distance_to(base_in_odom) > _ELSEWHERE
+        if is_elsewhere and not self._settings.strict_compat:
+            self._no_return.add(scan.ranges)
 
     def _move(self, base_now: Pose2) -> None:
         base_before = self._update_policy.updated_at
@@ -256,25 +273,41 @@ class Localizer:
             return _MATCHED_SHARE, partial(gaussian_poses, self._odom_in_map @ self._base_in_odom, spread)
         return drop, self._free_space.draw
 
-    def _estimate(self, base_in_odom: Pose2, scan: Scan) -> Estimate:
+    def _estimate(self, base_in_odom: Pose2, scan: Scan, beams: Beams) -> Estimate:
         cluster = best_cluster(self.particles)
         base_in_map, covariance = mean_and_covariance(cluster)
         if self._settings.refine_pose:
             ends_xy = all_beams(scan, self._settings).ends_xy
             base_in_map = match_scan(base_in_map, covariance, ends_xy, self._likelihood.field)
+            if self._search.is_doubtful(base_in_map, base_in_odom, beams, self._confirmed):
+                base_in_map = self._searched(base_in_map, cluster, base_in_odom, ends_xy, beams)
             self._matched_spread = covariance
         if cluster is not self.particles:
             _, covariance = mean_and_covariance(self.particles)
-        self._odom_in_map = base_in_map @ base_in_odom.inverse()
+        self._odom_in_map, self._estimated_at = base_in_map @ base_in_odom.inverse(), base_in_odom
         self._covariance = covariance
         return Estimate(base_in_map, self._covariance)
+
+    def _searched(
+        self, found: Pose2, cluster: ParticleSet, base_in_odom: Pose2, ends_xy: np.ndarray, beams: Beams
+    ) -> Pose2:
+        """Search for the pose around the last confirmed one, or around the particles if there is none."""
+        proposals, predicted, confirmed = cluster.poses, None, self._confirmed
+        if confirmed is not None:
+            proposals = confirmed.proposals(base_in_odom, self._motion, self._rng)
+            predicted = confirmed.odom_in_map @ base_in_odom
+        return self._search.best_match(found, cluster.poses, proposals, predicted, ends_xy, beams)
 
     def _evaluate_fit(self, base_in_odom: Pose2, beams: Beams, stamp: float) -> None:
         if self._odom_in_map is None:
             return
         base_in_map = self._odom_in_map @ base_in_odom
-        self._quality = scan_quality(base_in_map, beams, self._likelihood.field, self._grid)
+        self._quality = self._search.quality(base_in_map, beams)
         self._detector.add(self._quality, stamp)
+        if self.is_lost:
+            self._confirmed = None
+        elif self._quality.confirms_pose and self._estimated_at is not None:
+            self._confirmed = ConfirmedPose(self._odom_in_map, self._estimated_at)
         if self._settings.recover_when_lost and self._quality.contradicts_pose:
             self._update_policy.request()  # otherwise a robot at rest would never recover
 

@@ -49,7 +49,7 @@ from slam_lite.loops.place_recognition import (
 from slam_lite.loops.relocalization import Relocalizer
 from slam_lite.loops.revisited_segments import match_revisited_segments
 from slam_lite.matching.local_map import LocalMap, long_range_map
-from slam_lite.point_cloud import PointCloud
+from slam_lite.point_cloud import PointCloud, without_far_points
 
 # Errors of a step between consecutive keyframes that its match does not include: metres and radians.
 _STEP_SIGMA_XY, _STEP_SIGMA_YAW = 0.01, 0.003
@@ -362,6 +362,10 @@ class BackEnd:
         if known > self._places.start:  # otherwise a new trajectory has started since
             self._places = result.places
         self._unsettled = 0 if result.moved else self._unsettled + len(result.edges)
+
+    def remove_far_points(self, keyframe: int, laser_xy: np.ndarray, max_range: float) -> None:
+        """Remove the points of a keyframe beyond a range [m] from its laser (2,), in the base frame."""
+        self.clouds[keyframe] = without_far_points(self.clouds[keyframe], laser_xy, max_range)
 
     def run_final_optimization(self) -> None:
         """Optimize to convergence, and close loops along revisited segments."""

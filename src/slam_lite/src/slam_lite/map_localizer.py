@@ -3,13 +3,13 @@
 from typing import Optional
 
 from planar import Pose2, Scan
+from planar.geometry.no_return import NoReturnDetector
 from planar.geometry.pose import check_pose
 from slam_lite.config import MapperSettings
 from slam_lite.front_end import FrontEnd, NearbyKeyframes
 from slam_lite.loops.relocalization import Relocalizer
 from slam_lite.mapper import PoseUpdate, ranges_of
 from slam_lite.matching.local_map import LocalMap
-from slam_lite.no_return import NoReturnDetector
 from slam_lite.odometry.checks import MotionFilter
 from slam_lite.point_cloud import point_cloud_of
 from slam_lite.state import MapState

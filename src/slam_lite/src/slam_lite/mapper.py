@@ -9,16 +9,16 @@ import numpy as np
 from planar import OccupancyGrid, Pose2, Scan
 from planar.errors import OutOfRangeError
 from planar.geometry.grid import BandedGrid
+from planar.geometry.no_return import NoReturnDetector
 from planar.geometry.pose import check_pose
 from slam_lite.back_end import BackEnd, ClosureResult, ClosureTask
 from slam_lite.config import MapperSettings
 from slam_lite.front_end import FrontEnd, RecentKeyframes, TrackedPose
 from slam_lite.graph.pose_graph import relative_pose
 from slam_lite.keyframes import is_keyframe, prune_keyframes
-from slam_lite.no_return import NoReturnDetector
 from slam_lite.odometry.checks import DiscontinuityDetector, MotionFilter
 from slam_lite.point_cloud import PointCloud, point_cloud_of
-from slam_lite.rendering import Evidence, ScanBeams, beams_of, render_in_bands
+from slam_lite.rendering import Evidence, ScanBeams, beams_of, render_in_bands, without_far_beams
 from slam_lite.state import MapState
 
 # Multiple of the distance expected between two searches for loop closures after which one is due in any case.
@@ -126,8 +126,8 @@ class Mapper:
         check_pose(self._in_map(tracked.base_in_track), "a robot in the map")
         is_new_keyframe = is_keyframe(self._in_last_keyframe(tracked.base_in_track), self._settings)
         if is_new_keyframe:
-            self._no_return.add(scan.ranges)
             self._add_keyframe(tracked, cloud, beams_of(scan, max_range, usable_range))
+            self._learn_no_return(scan.ranges)
         return self._update(base_in_odom, tracked, is_new_keyframe)
 
     def closure_task(self) -> Optional[ClosureTask]:
@@ -173,6 +173,11 @@ class Mapper:
     def loop_count(self) -> int:
         """Number of loop closures in the graph."""
         return int(self._back_end.edges.is_loop.sum())
+
+    @property
+    def has_obstacles(self) -> bool:
+        """Whether any keyframe has a reading that marks an obstacle."""
+        return any(beams.marks.any() for beams in self._beams)
 
     def evidence(self) -> Evidence:
         """Return the input of a SessionRenderer: the beams of all keyframes and their present poses."""
@@ -238,6 +243,17 @@ class Mapper:
         """
         self.resume(replace(state, base_in_map=base_in_map))
         self._search_near_prior_only = True
+
+    def _learn_no_return(self, ranges: np.ndarray) -> None:
+        """Learn which readings (N,) mean "no return", and remove them from this session's keyframes."""
+        known = self._no_return.distance
+        self._no_return.add(ranges)
+        distance = self._no_return.distance
+        if distance >= known or self._settings.max_range:
+            return
+        for i in range(int(np.searchsorted(self._sessions, self._session)), len(self._beams)):
+            self._beams[i] = without_far_beams(self._beams[i], distance)
+            self._back_end.remove_far_points(i, self._beams[i].laser_xy, distance)
 
     def _relocalize(self, cloud: PointCloud) -> None:
         """Start a trajectory at the pose where the scan matches the map, or beside the map.

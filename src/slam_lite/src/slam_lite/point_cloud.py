@@ -54,6 +54,12 @@ def point_cloud_of(scan: Scan, usable_range: float, spacing: float) -> PointClou
     return PointCloud(points_xy, normals_xy)
 
 
+def without_far_points(cloud: PointCloud, laser_xy: np.ndarray, max_range: float) -> PointCloud:
+    """Drop the points beyond a range [m] from the laser (2,); returns ``cloud`` itself if there are none."""
+    kept = np.hypot(*(cloud.points_xy - laser_xy).T) <= max_range
+    return cloud if kept.all() else PointCloud(cloud.points_xy[kept], cloud.normals_xy[kept])
+
+
 def merge_clouds(parts: Iterable[Tuple[PointCloud, Pose2]]) -> PointCloud:
     """Merge clouds.
 

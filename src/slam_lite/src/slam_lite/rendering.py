@@ -64,6 +64,15 @@ def beams_of(scan: Scan, max_range: float, usable_range: float) -> ScanBeams:
     return ScanBeams(laser_xy, ends_xy.astype(np.float32), marks)
 
 
+def without_far_beams(beams: ScanBeams, max_range: float) -> ScanBeams:
+    """Drop the beams that end beyond a range [m]; returns ``beams`` itself if there are none."""
+    reach = np.hypot(*(beams.ends_xy - beams.laser_xy).T)
+    kept = reach <= max_range
+    if kept.all():
+        return beams
+    return ScanBeams(beams.laser_xy, beams.ends_xy[kept], beams.marks[kept])
+
+
 class Evidence(NamedTuple):
     """Input of map rendering.
 
@@ -134,6 +143,7 @@ class BeamCounter:
         """
         self._resolution = resolution
         self._placed: List[np.ndarray] = []
+        self._counted: List[ScanBeams] = []
         self.counts = TileCounts(np.zeros(2, dtype=np.int64), (0, 0))
 
     @property
@@ -142,27 +152,30 @@ class BeamCounter:
         return not self._placed
 
     def update(self, beams: Sequence[ScanBeams], poses: np.ndarray) -> None:
-        """Recount the keyframes that are new or have moved.
+        """Recount the keyframes that are new, have moved or have other beams.
 
         Args:
             beams: Beams of all keyframes of the session, N.
             poses: (N, 3), their present poses in the map frame.
         """
-        changed = [i for i in range(len(beams)) if i >= len(self._placed) or self._has_moved(i, poses[i])]
+        known = len(self._placed)
+        changed = [i for i in range(len(beams)) if i >= known or self._has_changed(i, beams[i], poses[i])]
         if changed:
             bounds = _bounds([beams[i] for i in changed], poses[changed], self._resolution)
             self.counts.cover(*_tiles_around(bounds))
         for i in changed:
             if i < len(self._placed):
-                self._count(beams[i], self._placed[i], -1)
-                self._placed[i] = poses[i].copy()
+                self._count(self._counted[i], self._placed[i], -1)
+                self._placed[i], self._counted[i] = poses[i].copy(), beams[i]
             else:
                 self._placed.append(poses[i].copy())
+                self._counted.append(beams[i])
             self._count(beams[i], poses[i], 1)
 
-    def _has_moved(self, i: int, pose: np.ndarray) -> bool:
+    def _has_changed(self, i: int, beams: ScanBeams, pose: np.ndarray) -> bool:
         x, y, turn = pose - self._placed[i]
-        return math.hypot(x, y) > 0.5 * self._resolution or abs(wrap(float(turn))) > 0.005
+        has_moved = math.hypot(x, y) > 0.5 * self._resolution or abs(wrap(float(turn))) > 0.005
+        return has_moved or beams is not self._counted[i]
 
     def _count(self, beams: ScanBeams, pose: np.ndarray, amount: int) -> None:
         self.counts.count(*_in_cells(beams, pose, self._resolution), beams.marks, amount)

@@ -9,6 +9,8 @@ from tf2_msgs.msg import TFMessage
 from amcl_lite.ros.estimate_publisher import EstimatePublisher
 from amcl_lite.ros.locked_localizer import LockedLocalizer
 from planar_ros.bags.bag_reader import TF, TF_STATIC, BagError, BagReader, absolute_name
+from planar_ros.bags.frames import read_tree
+from planar_ros.bags.scan_log import NoResultError
 from planar_ros.messages.conversion import LaserScanArrays
 from planar_ros.messages.scan_queue import ScanQueue
 from planar_ros.messages.transforms import Transforms
@@ -56,6 +58,7 @@ def play_bag(path: Path, transforms: Transforms, scans: ScanQueue, scan_period: 
         scan_period: Wall time between scans [s]; 0 or less for none.
 
     Raises:
+        NoResultError: If the bag has no scans.
         BagError: If the bag is truncated, after its readable part has been processed.
     """
     scan_topic = absolute_name(scans.topic)
@@ -64,7 +67,10 @@ def play_bag(path: Path, transforms: Transforms, scans: ScanQueue, scan_period: 
     scan_publisher = rospy.Publisher(scans.topic, LaserScanArrays, queue_size=100)
     tf_publisher = rospy.Publisher("/tf", TFMessage, queue_size=100)
     bag = BagReader(path)
-    transforms.add(TFMessage(bag.first_static_transforms()), is_static=True)
+    if scan_topic not in bag.types:
+        topics = ", ".join(sorted(bag.types)) or "none"
+        raise NoResultError(f"{path}: no scans on {scan_topic}; topics: {topics}")
+    transforms.add(TFMessage(list(read_tree(bag, [TF_STATIC]).first.values())), is_static=True)
     for topic, message, _ in bag.messages([scan_topic, TF, TF_STATIC]):
         if rospy.is_shutdown():
             return

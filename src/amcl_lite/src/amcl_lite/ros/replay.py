@@ -11,7 +11,6 @@ from amcl_lite.errors import LocalizationError
 from amcl_lite.localizer import Localizer
 from planar import Pose2, load_map, wrap
 from planar.config.parameters import official_names, settings_from_yaml
-from planar_ros.bags.bag_reader import BagError
 from planar_ros.bags.offline_replay import (
     ReplayOptions,
     load_settings,
@@ -20,7 +19,7 @@ from planar_ros.bags.offline_replay import (
     warn,
     write_trajectory,
 )
-from planar_ros.bags.scan_log import LoggedScan, ScanLog
+from planar_ros.bags.scan_log import LoggedScan, NoResultError, ScanLog
 from supervision.command_line import option
 
 
@@ -50,7 +49,11 @@ class AmclReplay(ReplayOptions):
 
 
 def main(arguments: Optional[List[str]] = None) -> int:
-    """Run the command; returns 0, or 1 if the bag was truncated, or 2 if nothing was localized."""
+    """Run the command.
+
+    Returns:
+        0; 1 if the bag was truncated or nothing could be localized; 2 for invalid input.
+    """
     return run_replay(AmclReplay, "amcl_lite_replay", _replay, arguments)
 
 
@@ -70,8 +73,11 @@ def _replay(options: AmclReplay) -> int:
             stamped_poses.append((logged.scan.stamp, *base_in_map.as_array()))
 
     exit_code = process_scans(log, update, "localizing", options.progress)
+    print(log)
     if not stamped_poses:
-        raise BagError(f"{options.bag}: no scan on {options.scan_topic} could be used")
+        raise NoResultError(f"{options.bag}: no scan on {options.scan_topic} could be used")
+    if not log.frames.has_odometry:
+        raise NoResultError(f"{options.bag}: no odometry: only a robot with odometry can be localized")
     trajectory = options.trajectory or Path(Path(options.bag).stem + ".tum")
     write_trajectory(trajectory, np.array(stamped_poses))
     print(f"{len(stamped_poses)} poses, the last one {_text(stamped_poses[-1])}: {trajectory}")

@@ -56,10 +56,10 @@ def _matched(x, y, yaw, spread, margin, points_xy, map_to_cells, fit):
     col, row, _, _ = pose_in_cells(x, y, yaw, map_to_cells)
     start, prior, points = (
         (col, row, yaw + map_to_cells.yaw),
-        _inverse(spread),
+        inverse(spread),
         points_xy * map_to_cells.scale,
     )
-    belief = _inverse(spread + margin)
+    belief = inverse(spread + margin)
     near, near_cost = _descended(start, start, prior, points, fit, _SHARPNESS)
     if not _is_within_reach(near, start, belief):
         near, near_cost = start, np.inf
@@ -87,7 +87,7 @@ def _descended(first, start, prior, points, fit, sharpness):
         if cost >= best_cost:
             break
         best, best_cost = pose, cost
-        step = _product(_inverse(hessian), gradient)
+        step = _product(inverse(hessian), gradient)
         pose = (pose[0] - step[0], pose[1] - step[1], pose[2] - step[2])
         if abs(step[0]) + abs(step[1]) < _SMALL_STEP and abs(step[2]) < _SMALL_TURN:
             break
@@ -135,7 +135,7 @@ def _interpolated(fit, col, row):
 
 
 @numba.njit(cache=True)
-def _inverse(matrix):
+def inverse(matrix):
     """Invert a (3, 3) matrix without LAPACK, which would start threads."""
     cofactors = np.empty((3, 3))
     for i in range(3):

@@ -1,11 +1,10 @@
 """Reader of ROS 1 bags, including truncated and partly broken ones."""
 
-import contextlib
 import math
 import shutil
 import tempfile
 from pathlib import Path
-from typing import Any, Dict, Iterable, Iterator, List, NamedTuple, Optional, Tuple, Union
+from typing import Any, Dict, Iterable, Iterator, NamedTuple, Optional, Tuple, Union
 
 import rosbag
 import rospy
@@ -15,6 +14,8 @@ from planar import PlanarError
 
 TF, TF_STATIC = "/tf", "/tf_static"
 LASER_SCAN = "sensor_msgs/LaserScan"
+# Message type of transforms, and its name before ROS Hydro.
+TF_MESSAGE, OLD_TF_MESSAGE = "tf2_msgs/TFMessage", "tf/tfMessage"
 # Margin [s] around time bounds, because a float does not hold a time to the nanosecond.
 TIME_MARGIN = 1e-6
 
@@ -40,13 +41,15 @@ class RecordedMessage(NamedTuple):
 class BagReader:
     """Read-only view of a bag; a truncated bag is read up to its last complete chunk.
 
-    Topic names are absolute ("/scan"), even if they were recorded without the slash.
+    Topic names are absolute ("/scan"), even if they were recorded without the slash. Messages are in the
+    order of the time at which they were recorded, also if the chunks of the file are not, as after merging
+    bags.
 
     Args:
         path: The bag file; it is never modified.
 
     Attributes:
-        types: Message type of each topic.
+        types: Message type of each topic; tf/tfMessage, which is the same message, as tf2_msgs/TFMessage.
         unavailable_topics: Topics whose message type is not installed or differs from the recorded one.
         is_empty: Whether the bag has no messages.
         start: Time of the first message [s]; 0 for an empty bag.
@@ -70,14 +73,16 @@ class BagReader:
 
     def _read_index(self) -> None:
         sums, topics = self._bag.get_type_and_topic_info()
-        self.types: Dict[str, str] = {absolute_name(topic): info.msg_type for topic, info in topics.items()}
+        recorded = {absolute_name(topic): info.msg_type for topic, info in topics.items()}
+        self.types: Dict[str, str] = {
+            topic: TF_MESSAGE if kind == OLD_TF_MESSAGE else kind for topic, kind in recorded.items()
+        }
         self.unavailable_topics = {
-            topic for topic, kind in self.types.items() if not _is_installed(kind, sums[kind])
+            topic for topic, kind in recorded.items() if not _is_installed(self.types[topic], sums[kind])
         }
         self._spellings = {topic: absolute_name(topic) for topic in topics}
         self.is_empty = self._bag.get_message_count() == 0
-        self.start = 0.0 if self.is_empty else self._bag.get_start_time()
-        self.end = 0.0 if self.is_empty else self._bag.get_end_time()
+        self.start, self.end = (0.0, 0.0) if self.is_empty else _sorted_index(self._bag)
 
     def messages(
         self, topics: Iterable[str], since: float = 0.0, until: float = math.inf
@@ -113,26 +118,22 @@ class BagReader:
             now = recorded.to_sec()
             yield RecordedMessage(self._spellings[topic], message, now)
 
-    def first_static_transforms(self) -> List[Any]:
-        """Return the first static transform of each frame, wherever in the bag it is.
-
-        Static transforms hold from the start, but a recorder that joins late or repeats them at a split
-        writes them later.
-
-        Returns:
-            The transforms as recorded (geometry_msgs/TransformStamped).
-        """
-        found: Dict[str, Any] = {}
-        with contextlib.suppress(BagError):  # raised again when the messages are read up to the broken part
-            for played in self.messages([TF_STATIC]):
-                for transform in played.message.transforms:
-                    found.setdefault(transform.child_frame_id, transform)
-        return list(found.values())
-
 
 def absolute_name(topic: str) -> str:
     """Return a topic name with exactly one leading slash."""
     return "/" + topic.lstrip("/")
+
+
+def _sorted_index(bag: rosbag.Bag) -> Tuple[float, float]:
+    """Sort the index of a bag by time, as ``rosbag play`` does, and return the first and the last time [s].
+
+    rosbag for Python merges the messages of the topics in the order of the file's chunks, and takes the times
+    of the first and last chunk for those of the bag. It has no public access to its index.
+    """
+    indexes = list(bag._connection_indexes.values())
+    for index in indexes:
+        index.sort(key=lambda entry: entry.time.to_nsec())  # stable, and fast if it is in order
+    return min(each[0].time for each in indexes).to_sec(), max(each[-1].time for each in indexes).to_sec()
 
 
 def _is_installed(kind: str, md5sum: str) -> bool:

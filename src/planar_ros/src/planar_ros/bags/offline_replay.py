@@ -12,7 +12,7 @@ from planar import PlanarError, write_atomically
 from planar.config.parameters import settings_from_yaml
 from planar.files.writing import tum_text
 from planar_ros.bags.bag_reader import BagError
-from planar_ros.bags.scan_log import LoggedScan, ScanLog
+from planar_ros.bags.scan_log import LoggedScan, NoResultError, ScanLog
 from planar_ros.node.entry import use_one_blas_thread
 from supervision.command_line import argument, option, parse
 
@@ -54,7 +54,8 @@ def run_replay(
         arguments: Command line arguments; None for those of the process.
 
     Returns:
-        The exit code of ``replay``, or 2 after a PlanarError, which is printed in one line.
+        The exit code of ``replay``; 1 after a NoResultError and 2 after another PlanarError, which is printed
+        in one line.
     """
     use_one_blas_thread()
     unmap_large_arrays()
@@ -62,7 +63,7 @@ def run_replay(
         return replay(parse(kind, sys.argv[1:] if arguments is None else arguments, program))
     except PlanarError as error:
         print(f"error: {error}", file=sys.stderr)
-        return 2
+        return 1 if isinstance(error, NoResultError) else 2
 
 
 def unmap_large_arrays() -> None:

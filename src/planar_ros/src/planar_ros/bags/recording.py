@@ -2,7 +2,7 @@
 
 import math
 from pathlib import Path
-from typing import Any, Dict, Iterable, Iterator, List, Sequence, Set, Tuple
+from typing import Dict, Iterable, Iterator, List, Sequence, Set, Tuple
 
 from planar_ros.bags.bag_reader import BagError, BagReader, RecordedMessage
 
@@ -17,7 +17,7 @@ class Recording:
         paths: All bag files, in the order given.
         truncations: For each truncated bag its name and where it is cut off, for messages to people.
         start: Time of the first message [s].
-        end: Time of the last message of the last bag [s].
+        end: Time of the last message [s].
 
     Raises:
         BagError: If a path has no bag, a bag is unreadable, or no bag has a message.
@@ -30,7 +30,7 @@ class Recording:
         self._bags = sorted((bag for bag in bags if not bag.is_empty), key=lambda bag: bag.start)
         if not self._bags:
             raise BagError(f"{self.paths[0]}: the bag has no messages")
-        self.start, self.end = self._bags[0].start, self._bags[-1].end
+        self.start, self.end = self._bags[0].start, max(bag.end for bag in self._bags)
 
     @property
     def types(self) -> Dict[str, str]:
@@ -65,11 +65,6 @@ class Recording:
         topics = list(topics)
         for bag in self._bags:
             yield from bag.messages(topics, since, until)
-
-    def first_static_transforms(self) -> List[Any]:
-        """Return the first static transform of each frame, wherever in the recording it is."""
-        every = [transform for bag in self._bags for transform in bag.first_static_transforms()]
-        return list({transform.child_frame_id: transform for transform in reversed(every)}.values())
 
 
 def bag_paths(paths: Sequence[Path]) -> List[Path]:

@@ -25,12 +25,13 @@ class TransformLog:
 
     def __init__(self, static: Iterable[Any]) -> None:
         self._static: Dict[str, TransformStamped] = {}
-        for typed in map(_typed, static):
-            if is_stamp(typed.header.stamp):
-                self._static[typed.child_frame_id] = typed
+        for transform in map(typed, static):
+            if is_stamp(transform.header.stamp):
+                self._static[transform.child_frame_id] = transform
         self._frames = {
             name for one in self._static.values() for name in (one.header.frame_id, one.child_frame_id)
         }
+        self._earliest: Optional[tf2_py.BufferCore] = None
         self.clear()
 
     def clear(self) -> None:
@@ -52,14 +53,14 @@ class TransformLog:
         """
         contradicted: List[str] = []
         for logged in message.transforms:
-            transform = _typed(logged)
+            transform = typed(logged)
             parent, child = transform.header.frame_id, transform.child_frame_id
             self._frames |= {parent, child}
             if not is_stamp(transform.header.stamp):
                 continue
             if is_static:
                 known = self._static.get(child)
-                if known is not None and not _is_same(known, transform):
+                if known is not None and not is_same(known, transform):
                     contradicted.append(f"{known.header.frame_id} -> {child}")
                 self._static[child] = transform
                 self._buffer.set_transform_static(transform, "bag")
@@ -96,18 +97,28 @@ class TransformLog:
             transform = self._lookup(target, source, Time(0))
         return None if transform is None else self._pose_of(transform)
 
+    def set_earliest(self, transforms: Iterable[Any]) -> None:
+        """Set the first transform of each frame in the bag, for sensor data from before these."""
+        self._earliest = tf2_py.BufferCore()
+        for transform in map(typed, transforms):
+            if is_stamp(transform.header.stamp):
+                self._earliest.set_transform_static(transform, "bag")
+
     def mounting(self, base: str, sensor: str, stamp) -> Optional[Tuple[Pose2, bool]]:
-        """Return how a sensor is mounted at a stamp, or the latest known way.
+        """Return how a sensor was mounted at a stamp.
 
         Args:
-            base: Frame of the robot.
+            base: Frame of the base.
             sensor: Frame of the sensor.
-            stamp: Time of the pose.
+            stamp: Time of the pose. If it is not known at that time, the latest one is returned, or that of
+                ``set_earliest``.
 
         Returns:
-            The sensor's pose in the base frame and whether it is upside down; None if it is unknown.
+            The sensor's pose in the base frame and whether it is mounted upside down; None if unknown.
         """
         transform = self._lookup(base, sensor, stamp) or self._lookup(base, sensor, Time(0))
+        if transform is None and self._earliest is not None:
+            transform = _lookup_in(self._earliest, base, sensor, Time(0))
         pose = None if transform is None else self._pose_of(transform)
         if transform is None or pose is None:
             return None
@@ -126,15 +137,19 @@ class TransformLog:
             return None
 
     def _lookup(self, target: str, source: str, stamp):
-        if not is_stamp(stamp):
-            return None
-        try:
-            return self._buffer.lookup_transform_core(target, source, stamp).transform
-        except tf2_py.TransformException:
-            return None
+        return _lookup_in(self._buffer, target, source, stamp)
 
 
-def _is_same(one: TransformStamped, other: TransformStamped) -> bool:
+def _lookup_in(buffer: tf2_py.BufferCore, target: str, source: str, stamp):
+    if not is_stamp(stamp):
+        return None
+    try:
+        return buffer.lookup_transform_core(target, source, stamp).transform
+    except tf2_py.TransformException:
+        return None
+
+
+def is_same(one: TransformStamped, other: TransformStamped) -> bool:
     """Whether two transforms have the same parent and, up to rounding, the same pose."""
     a, b = (
         np.array([getattr(part, axis) for part in (t.translation, t.rotation) for axis in part.__slots__])
@@ -145,7 +160,7 @@ def _is_same(one: TransformStamped, other: TransformStamped) -> bool:
     return one.header.frame_id == other.header.frame_id and bool(is_close)
 
 
-def _typed(logged) -> TransformStamped:
+def typed(logged) -> TransformStamped:
     """Convert a transform to the classes tf2 needs; rosbag generates separate ones."""
     v, q = logged.transform.translation, logged.transform.rotation
     return TransformStamped(

@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import List, Optional
 
 from planar import PlanarError, save_map
-from planar_ros.bags.bag_reader import BagError
 from planar_ros.bags.offline_replay import (
     ReplayOptions,
     load_settings,
@@ -14,7 +13,7 @@ from planar_ros.bags.offline_replay import (
     warn,
     write_trajectory,
 )
-from planar_ros.bags.scan_log import LoggedScan, ScanLog
+from planar_ros.bags.scan_log import LoggedScan, NoResultError, ScanLog
 from slam_lite.config import NodeSettings
 from slam_lite.mapper import Mapper
 from slam_lite.scan_trajectory import ScanTrajectory
@@ -42,7 +41,8 @@ def main(arguments: Optional[List[str]] = None) -> int:
         arguments: Command line without the program's name; by default that of the process.
 
     Returns:
-        Exit code: 0; 1 if the bag is truncated and the part before is saved; 2 if nothing was mapped.
+        Exit code: 0; 1 if no useful map came of it, or the bag is truncated and the part before is saved; 2
+        for invalid input.
     """
     return run_replay(SlamReplay, "slam_lite_replay", _replay, arguments)
 
@@ -50,13 +50,18 @@ def main(arguments: Optional[List[str]] = None) -> int:
 def _replay(options: SlamReplay) -> int:
     mapper, trajectory = Mapper(load_settings(NodeSettings, options.config)), ScanTrajectory()
     exit_code = _work_through(options, mapper, trajectory)
-    if len(trajectory) == 0:
-        raise BagError(f"{options.bag}: no usable scan on {options.scan_topic}")
+    if not mapper.has_obstacles:
+        raise NoResultError(
+            f"{options.bag}: no reading on {options.scan_topic} is valid (between range_min and range_max): "
+            "nothing to map"
+        )
     mapper.run_final_optimization()
     _save(options, mapper, trajectory)
-    print(
-        f"{len(trajectory)} scans, {len(mapper.keyframe_poses)} keyframes, {mapper.loop_count} loop closures"
-    )
+    keyframes = len(mapper.keyframe_poses)
+    print(f"{len(trajectory)} scans, {keyframes} keyframes, {mapper.loop_count} loop closures")
+    if keyframes == 1 and exit_code == 0:
+        warn(f"{options.bag}: the robot did not move: the map shows what it saw from one place")
+        return 1
     return exit_code
 
 
@@ -72,7 +77,9 @@ def _work_through(options: SlamReplay, mapper: Mapper, trajectory: ScanTrajector
             warn(f"{options.bag}: scan ignored: {error}")
         trajectory.add(logged.base_in_odom, logged.scan, update)
 
-    return process_scans(log, insert, "mapping", options.progress)
+    exit_code = process_scans(log, insert, "mapping", options.progress)
+    print(log)
+    return exit_code
 
 
 def _save(options: SlamReplay, mapper: Mapper, trajectory: ScanTrajectory) -> None:

@@ -17,6 +17,7 @@ from visualization_msgs.msg import Marker, MarkerArray
 
 from home_service.ros.bags import BROKEN, ENDED, PLAYING, bags_of
 from planar_ros.bags.bag_reader import TF_STATIC, BagError, RecordedMessage
+from planar_ros.bags.frames import read_tree
 from planar_ros.bags.playback_clock import PlaybackClock
 from planar_ros.bags.recording import Recording
 from planar_ros.bags.snapshot import MARKERS, snapshot_at
@@ -66,7 +67,8 @@ class BagViewer:
 
     def work(self) -> None:
         """Play to the end; latched topics stay published afterwards."""
-        self._static.publish(TFMessage(self._recording.first_static_transforms()))
+        static = read_tree(self._recording, [TF_STATIC]).first.values()
+        self._static.publish(TFMessage(list(static)))
         self._state.publish(PLAYING)
         try:
             while not rospy.is_shutdown():

@@ -5,8 +5,11 @@ constant. Interpreted as hits, such readings form a circle that moves with the r
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
+
+from planar.geometry.scan import Scan
 
 # Bin size of the histogram [m], and range at which it starts [m]: nearer readings are seldom "no return".
 _BIN, _NEAREST = 0.1, 15.0
@@ -26,6 +29,10 @@ class NoReturnDetector:
     def __init__(self) -> None:
         self._counts = np.zeros(0, dtype=np.int64)
         self.distance = math.inf
+
+    def limited(self, scan: Scan) -> Scan:
+        """Return a scan whose ``range_max`` is at most ``distance``."""
+        return replace(scan, range_max=self.distance) if self.distance < scan.range_max else scan
 
     def add(self, ranges: np.ndarray) -> None:
         """Count the readings of one scan.

@@ -2,7 +2,8 @@ import math
 
 import numpy as np
 
-from slam_lite.no_return import NoReturnDetector
+from planar import Scan
+from planar.geometry.no_return import NoReturnDetector
 
 BEAMS = np.linspace(-1.2, 1.2, 140)
 
@@ -20,3 +21,11 @@ def test_walls_are_not_learned_as_no_return():
     for step in range(200):
         learned.add((60.0 - 0.2 * step) / np.cos(BEAMS))
     assert learned.distance == math.inf
+
+
+def test_the_range_of_a_scan_is_limited_to_what_is_a_return():
+    learned = NoReturnDetector()
+    scan = Scan(0.0, 0.0, 0.1, np.full(300, 51.1), 0.1, 80.0)
+    assert learned.limited(scan) is scan
+    learned.add(scan.ranges)
+    assert not learned.limited(scan).hits.any()
