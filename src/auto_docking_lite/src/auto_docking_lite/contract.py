@@ -65,7 +65,6 @@ class DockInputs:
         bumpers: Pressed bumpers, bits of kobuki_msgs/SensorState.
         charger: Charger state of kobuki_msgs/SensorState; 0 is discharging.
         scan: Latest scan; None for none.
-        base_in_laser: Pose of the base in the frame of the scan.
         odom_in_map: Pose of the odometry frame in the map; None while unknown.
     """
 
@@ -75,7 +74,6 @@ class DockInputs:
     bumpers: int = 0
     charger: int = 0
     scan: Optional[Scan] = None
-    base_in_laser: Pose2 = Pose2()
     odom_in_map: Optional[Pose2] = None
 
 

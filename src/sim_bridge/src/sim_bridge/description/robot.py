@@ -85,5 +85,6 @@ def _profile(
         sensors=tuple(profiles.sensors),
         joint_states=profiles.joint_states,
         namespace=profiles.namespace,
+        battery=profiles.battery,
         warnings=(*warnings, *profiles.warnings),
     )

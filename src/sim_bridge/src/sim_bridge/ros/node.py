@@ -18,6 +18,7 @@ from planar_ros.node.runner import run
 from rospy_transport.replacements import install
 from sim_bridge.config import BridgeSettings, RobotSettings, SimulationSettings
 from sim_bridge.description import read_sdf_robot
+from sim_bridge.docks import dock_pose, with_dock
 from sim_bridge.geometry.pose3 import to_pose2
 from sim_bridge.noise import noise_named
 from sim_bridge.pacing import Pacer
@@ -63,6 +64,8 @@ class Bridge:
         joint_steps = _steps_between(settings.joint_state_rate, rate, "joint_state_rate")
         robots = _robots_from_parameters(robot)
         world = world_of(settings)
+        if settings.dock:
+            world = with_dock(world, dock_pose(settings.dock, "~dock"))
         for warning in world.warnings:
             rospy.logwarn("%s", warning)
         self._calls = CallQueue()

@@ -33,6 +33,8 @@ from sim_bridge.world import (
 )
 
 DEFAULT_GRAVITY = 9.8
+# Folder of the models that are part of sim_bridge; those of other folders take precedence.
+MODELS = Path(__file__).resolve().parents[1] / "models"
 
 
 def load_world(path, model_folders: Sequence[Path] = (), strict: bool = False) -> World:
@@ -88,7 +90,7 @@ class _SdfReader:
         self._robots: List[DrivenModel] = []
         self._lights: List[Light] = []
         self._trajectories: List[ScriptedTrajectory] = []
-        self._model_folders = model_folders
+        self._model_folders = model_folders = (*model_folders, MODELS)
         self._warnings = warnings
         self._models = ModelReader(model_folders, warnings)
 
@@ -227,6 +229,7 @@ class _SdfReader:
             Inertia() if fixed else read_inertia(link, self._warnings),
             _damping(link),
             gravity is None or link.flag("gravity"),
+            is_dock=model.is_dock and fixed,
         )
 
     def _collisions(

@@ -3,7 +3,7 @@
 from typing import Dict, Hashable, List, Tuple
 
 from sim_bridge.sdf.element import Element
-from sim_bridge.sdf.supported import IGNORED, REDUNDANT_PLUGINS, SUPPORTED, plugin_name
+from sim_bridge.sdf.supported import DOCK, IGNORED, REDUNDANT_PLUGINS, SUPPORTED, plugin_name
 
 
 class SkippedElements:
@@ -51,7 +51,7 @@ class SkippedElements:
         known = SUPPORTED[element.tag] | IGNORED.get(element.tag, frozenset())
         for child in element.children():
             if child.tag not in known and not (
-                child.tag == "plugin" and plugin_name(child) in REDUNDANT_PLUGINS
+                child.tag == "plugin" and plugin_name(child) in (*REDUNDANT_PLUGINS, DOCK)
             ):
                 self.skip(child, kind=(element.tag, child.tag, child.attribute("filename")))
 

@@ -2,12 +2,13 @@
 
 import math
 from dataclasses import dataclass
-from typing import Dict, FrozenSet
+from typing import Dict, FrozenSet, Optional
 
 import numpy as np
 
 from sim_bridge.config import SimulationSettings
 from sim_bridge.geometry.pose3 import transform_points
+from sim_bridge.power.system import PowerReading
 from sim_bridge.sensors.base import Mounting, Schedule, SensorContext, every
 
 LEFT, CENTRE, RIGHT = 0, 1, 2
@@ -36,11 +37,13 @@ class KobukiReading:
         bumpers: Pressed sectors.
         cliffs: Sectors without a floor below.
         dropped: Dropped wheels: left 0, right 1.
+        power: State of the power system.
     """
 
     bumpers: FrozenSet[int] = frozenset()
     cliffs: FrozenSet[int] = frozenset()
     dropped: FrozenSet[int] = frozenset()
+    power: Optional[PowerReading] = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,10 +87,10 @@ class KobukiSensors:
             touched = np.array([bump.point for bump in context.bumps])
             bumpers = pressed(transform_points(np.linalg.inv(base_in_world), touched))
         if not any(is_deep):
-            return KobukiReading(bumpers)
+            return KobukiReading(bumpers, power=context.power)
         cliffs = (sector for sector, deep in zip(CLIFF_SENSORS, is_deep) if deep)
         dropped = (wheel for wheel, deep in enumerate(is_deep[len(CLIFF_SENSORS) :]) if deep)
-        return KobukiReading(bumpers, frozenset(cliffs), frozenset(dropped))
+        return KobukiReading(bumpers, frozenset(cliffs), frozenset(dropped), context.power)
 
 
 def pressed(contacts_xyz: np.ndarray) -> FrozenSet[int]:
