@@ -332,3 +332,8 @@ class Docking:
         self._result = DockResult(code, f"Aborted: {code.name} ({int(code)}): {text}{attempts}.")
         self.state = DockState.IDLE
         return STOP
+
+
+def _is_known(estimate: DockEstimate, limits: Tuple[float, float]) -> bool:
+    """Return whether the deviations of an estimate are within limits [m, rad]."""
+    return estimate.position_deviation < limits[0] and estimate.yaw_deviation < limits[1]

@@ -18,6 +18,8 @@ SECTORS = {
     CENTRE: (-math.radians(30.0), math.radians(30.0)),
     RIGHT: (-math.radians(90.0), -math.radians(30.0)),
 }
+# Bits of the bumpers and cliff sensors in kobuki_msgs/SensorState.
+SECTOR_BITS = {RIGHT: 1, CENTRE: 2, LEFT: 4}
 LOWEST, HIGHEST = 0.01, 0.13
 # Positions of the cliff sensors in the base frame [m] (kobuki_description).
 CLIFF_SENSORS: Dict[int, np.ndarray] = {

@@ -7,11 +7,10 @@ from sensor_msgs.msg import PointCloud2
 from sim_bridge.ros.kobuki.bumper_cloud import FRAME, BumperCloud
 from sim_bridge.power.system import PowerReading
 from sim_bridge.ros.publishers import RobotPublishers
-from sim_bridge.sensors.kobuki import CENTRE, LEFT, RIGHT, KobukiProfile, KobukiReading
+from sim_bridge.sensors.kobuki import SECTOR_BITS, KobukiProfile, KobukiReading
 
 NAMESPACE = "mobile_base"
 # Bits of SensorState; wheels have other numbers than sectors.
-SECTOR_BITS = {RIGHT: 1, CENTRE: 2, LEFT: 4}
 WHEEL_BITS = {WheelDropEvent.RIGHT: 1, WheelDropEvent.LEFT: 2}
 
 
