@@ -111,7 +111,7 @@ def run_scene(options: Options, seed: int, count: int = STARTS_PER_SCENE) -> Lis
     needed = (LaserProfile, KobukiProfile, DockIrProfile)
     robot = replace(robot, sensors=tuple(each for each in robot.sensors if isinstance(each, needed)))
     settings = SimulationSettings(**noise_named(options.noise))
-    simulation = Simulation(world, robot, settings, seed, Pose2(2.0, 0.0, math.pi))
+    simulation = Simulation(world, robot, settings, seed, Pose2(0.9, 0.0, math.pi))
     simulation.mark()
     starts = []
     for number in range(count):

@@ -30,20 +30,26 @@ from planar.geometry.dock_field import CENTRE, NEAR, ROBOT_FRONT
 
 STOP = Twist2()
 ARRIVED = "Arrived on docking station successfully."
-# Uncertainty with which the robot leaves the scan, and with which it approaches [m, rad].
-SCAN_DEVIATION, APPROACH_DEVIATION = (0.25, 0.35), (0.12, 0.3)
+# Uncertainty with which the robot leaves the scan [m, rad].
+SCAN_DEVIATION = 0.25, 0.35
+# Angle of the scan after which any signal is enough [rad].
+SCAN_ANGLE = 2.5
 # Distance from the staging pose and from the middle line at which the approach begins [m].
 STAGED, ON_LINE = 0.06, 0.1
+# Heading error with which the approach begins [rad].
+ALIGNED = 0.06
 # Distance of the front from which lateral and heading errors must be small enough for the contacts [m, rad].
-GATE, GATE_ERRORS = 0.12, (0.025, 0.15)
+GATE, GATE_ERRORS = 0.12, (0.06, 0.3)
 # Distance by which the robot backs off from what it bumped into, and its speed [m, m/s].
-BACKING, BACKING_SPEED = 0.2, 0.12
+BACKING, BACKING_SPEED = 0.3, 0.15
 # Time without progress at the dock [s], and distance by which the robot may drive on past it [m].
 STALLED, OVERSHOOT = 3.0, 0.06
 # Time without a signal during the approach after which the robot searches again [s].
 LOST = 4.0
 # Bearings of the staging poses of the attempts, and of stopovers on the way around an obstacle [rad].
-BEARINGS, STOPOVERS = (0.0, 0.25, -0.25, 0.5, -0.5), (0.4, -0.4, 0.8, -0.8)
+BEARINGS, STOPOVERS = (0.0, 0.0, 0.3, -0.3, 0.5), (0.4, -0.4, 0.8, -0.8)
+# Distance of stopovers around the robot [m], and their number.
+DETOUR, DETOURS = 0.8, 8
 
 
 class Docking:
@@ -70,7 +76,7 @@ class Docking:
         self._estimator = DockEstimator(settings, np.random.default_rng(seed))
         self.state = DockState.IDLE
         self._text, self._failure = "", (DockCode.FAILED_TO_DETECT_DOCK, "no signal of a dock")
-        self._attempt, self._turned, self._last_yaw = 0, 0.0, 0.0
+        self._attempt, self._turned, self._last_yaw, self._side = 0, 0.0, 0.0, 0.0
         self._since: Dict[str, float] = {}
         self._backed_to: Optional[Pose2] = None
         self._is_sent = False
@@ -165,16 +171,14 @@ class Docking:
         """Turn until the pose of the dock is known well enough, at most once around."""
         estimate, is_around = self._estimator.estimate(), self._turned > 2.0 * math.pi
         if self._estimator.has_signal and estimate is not None:
-            if is_around or _is_known(estimate, SCAN_DEVIATION):
+            if self._turned > SCAN_ANGLE or _is_known(estimate, SCAN_DEVIATION):
                 return self._enter(DockState.FIND_STREAM, "turning to the middle line")
         elif is_around:
             return self._not_found(inputs)
-        side = 1.0
-        if estimate is not None:
-            dock, base = estimate.dock_in_odom, inputs.base_in_odom
-            side = wrap(math.atan2(dock.y - base.y, dock.x - base.x) - base.yaw)
-            side = 1.0 if self._turned > 0.5 * math.pi else side
-        return Twist2(0.0, math.copysign(self._settings.scan_rate, side))
+        if self._side == 0.0:
+            bearing = 1.0 if estimate is None else _bearing(estimate.dock_in_odom, inputs.base_in_odom)
+            self._side = math.copysign(1.0, bearing)
+        return Twist2(0.0, self._side * self._settings.scan_rate)
 
     def _not_found(self, inputs: DockInputs) -> Optional[Twist2]:
         text = f"no signal of a dock within {self._settings.dock_far_range:g} m"
@@ -206,6 +210,10 @@ class Docking:
             for bearing in STOPOVERS
             for factor in (1.0, 1.6)
         ]
+        stopovers += [
+            base @ Pose2(0.0, 0.0, 2.0 * math.pi * number / DETOURS) @ Pose2(DETOUR)
+            for number in range(DETOURS)
+        ]
         return shortest_free(obstacles, base, target, stopovers, self._settings.robot_radius)
 
     def _straight(self, inputs: DockInputs, target: Pose2) -> Optional[Twist2]:
@@ -232,9 +240,8 @@ class Docking:
         """Turn to the dock."""
         estimate, base = self._estimator.estimate(), inputs.base_in_odom
         assert estimate is not None
-        dock = estimate.dock_in_odom
-        error = wrap(math.atan2(dock.y - base.y, dock.x - base.x) - base.yaw)
-        if abs(error) > 0.06:
+        error = _bearing(estimate.dock_in_odom, base)
+        if abs(error) > ALIGNED:
             return turn_to(error, self._settings)
         return self._enter(DockState.ALIGNED_FAR, "approaching along the middle line")
 
@@ -315,7 +322,7 @@ class Docking:
         return Twist2(-BACKING_SPEED)
 
     def _enter(self, state: DockState, text: str) -> Twist2:
-        self.state, self._text, self._turned = state, text, 0.0
+        self.state, self._text, self._turned, self._side = state, text, 0.0, 0.0
         self._since = {name: at for name, at in self._since.items() if name == "charging"}
         return STOP
 
@@ -337,3 +344,8 @@ class Docking:
 def _is_known(estimate: DockEstimate, limits: Tuple[float, float]) -> bool:
     """Return whether the deviations of an estimate are within limits [m, rad]."""
     return estimate.position_deviation < limits[0] and estimate.yaw_deviation < limits[1]
+
+
+def _bearing(dock: Pose2, base: Pose2) -> float:
+    """Return the direction to a dock in the robot's frame [rad]."""
+    return wrap(math.atan2(dock.y - base.y, dock.x - base.x) - base.yaw)

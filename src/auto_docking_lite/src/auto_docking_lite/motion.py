@@ -38,7 +38,7 @@ def drive_to(base: Pose2, target: Pose2, settings: DockingSettings) -> Twist2:
 
 
 def follow_line(base_in_dock: Pose2, front_distance: float, settings: DockingSettings) -> Twist2:
-    """Return the command that drives to a dock along its middle line (pure pursuit).
+    """Return the command that drives to a dock along its middle line by turning to a point ahead on it.
 
     Args:
         base_in_dock: Pose of the robot in the dock's frame.
@@ -47,8 +47,8 @@ def follow_line(base_in_dock: Pose2, front_distance: float, settings: DockingSet
     """
     speed = min(max(CONTACT_GAIN * front_distance, settings.contact_speed), settings.approach_speed)
     error = wrap(math.atan2(-base_in_dock.y, -LOOKAHEAD) - base_in_dock.yaw)
-    curvature = 2.0 * math.sin(error) / math.hypot(base_in_dock.y, LOOKAHEAD)
-    return Twist2(speed, max(-settings.turn_rate, min(settings.turn_rate, speed * curvature)))
+    omega = turn_to(error, settings).omega
+    return Twist2(speed * max(math.cos(error), 0.0), omega)
 
 
 def obstacles_in_base(scan: Optional[Scan]) -> np.ndarray:
