@@ -3,11 +3,12 @@
 
 python3 tests/benchmarks/docking.py [--starts 200] [--seed 1] [--clutter 5] [--jobs 1] [--json FILE]
 
-The dock stands at a wall. Starts are uniform in area within --distance and --angle of the dock's middle line, with
-any heading. Boxes stand at random where they leave the robot's start and the last metre before the dock free, and
-a path between them. The pose of the dock is known with an error of up to 0.3 m and 10 degrees. A start counts as
-docked if the result is success and the simulated robot charges. Every 20 starts have another scene. Sensor noise
-is that of the profile --noise. Exit code 1 if fewer starts dock than --least.
+The dock stands at a wall. Starts are uniform in area within --distance and --angle of the dock's middle
+line, with any heading. Boxes stand at random where they leave the robot's start and the last metre
+before the dock free, and a path between them. The pose of the dock is known with an error of up to 0.3 m
+and 10 degrees. A start counts as docked if the result is success and the simulated robot charges. Every
+20 starts have another scene. Sensor noise is that of the profile --noise. Exit code 1 if fewer starts
+dock than --least.
 """
 
 import argparse
@@ -32,10 +33,10 @@ from sim_bridge import Episode, Simulation, SimulationSettings, robot_named
 from sim_bridge.docks import DOCK_NAME, with_dock
 from sim_bridge.geometry.shapes import Plane
 from sim_bridge.noise import noise_named
-from sim_bridge.sensors.kobuki import KobukiProfile
 from sim_bridge.sensors.dock_ir import DockIrProfile
+from sim_bridge.sensors.kobuki import KobukiProfile
 from sim_bridge.sensors.lidar import LaserProfile
-from sim_bridge.simulation import ROBOT_NAME, box_on_floor
+from sim_bridge.simulation import box_on_floor
 from sim_bridge.world import Body, Collision, World
 
 STARTS_PER_SCENE = 20
@@ -123,9 +124,7 @@ def run_scene(options: Options, seed: int, count: int = STARTS_PER_SCENE) -> Lis
     return starts
 
 
-def _run(
-    simulation: Simulation, base: Pose2, seed: int, rng: np.random.Generator, options: Options
-) -> Start:
+def _run(simulation: Simulation, base: Pose2, seed: int, rng: np.random.Generator, options: Options) -> Start:
     settings = DockingSettings()
     controller = DockController(settings, seed=seed)
     hooks = DockingHooks(controller)
@@ -134,7 +133,9 @@ def _run(
     episode = Episode(simulation, settings.period, settings.period, hooks=(hooks,))
     dock = base.inverse()  # the odometry, and with it the map, starts at the robot
     distance, angle = PRIOR_DISTANCE * math.sqrt(rng.random()), rng.uniform(-math.pi, math.pi)
-    error = Pose2(distance * math.cos(angle), distance * math.sin(angle), rng.uniform(-PRIOR_ANGLE, PRIOR_ANGLE))
+    error = Pose2(
+        distance * math.cos(angle), distance * math.sin(angle), rng.uniform(-PRIOR_ANGLE, PRIOR_ANGLE)
+    )
     controller.start(0.0, dock @ error if options.is_known else None)
     result: Optional[DockResult] = None
     while result is None:
@@ -179,7 +180,9 @@ def main() -> int:
     parser.add_argument("--failures", action="store_true", help="list the starts that failed")
     parser.add_argument("--json", type=Path, metavar="FILE", help="also write the starts to this file")
     given = parser.parse_args()
-    options = Options(given.distance, math.radians(given.angle), given.clutter, given.noise, not given.unknown)
+    options = Options(
+        given.distance, math.radians(given.angle), given.clutter, given.noise, not given.unknown
+    )
     scenes = range(given.seed, given.seed + math.ceil(given.starts / STARTS_PER_SCENE))
     begin, starts = time.monotonic(), []
     with multiprocessing.get_context("spawn").Pool(given.jobs) as pool:

@@ -55,7 +55,9 @@ class NodeSettings(DockingSettings):
     global_frame: str = parameter("map", "frame of the dock's pose")
     robot_base_frame: str = parameter("base_footprint", "frame of the robot")
     odom_frame: str = parameter("odom", "frame of the odometry")
-    min_abs_v: float = parameter(0.01, "smallest speed that is sent (kobuki_auto_docking)", "m/s", ZERO_OR_MORE)
+    min_abs_v: float = parameter(
+        0.01, "smallest speed that is sent (kobuki_auto_docking)", "m/s", ZERO_OR_MORE
+    )
     min_abs_w: float = parameter(
         0.1, "smallest turn rate that is sent (kobuki_auto_docking)", "rad/s", ZERO_OR_MORE
     )

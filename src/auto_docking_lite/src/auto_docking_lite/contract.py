@@ -60,8 +60,8 @@ class DockInputs:
     Attributes:
         stamp: Time [s].
         base_in_odom: Robot pose by odometry.
-        signals: Bytes of the right, centre and left receiver (kobuki_msgs/DockInfraRed), each with the pose of
-            the robot in odom at which it was received; those since the last tick.
+        signals: Bytes of the right, centre and left receiver (kobuki_msgs/DockInfraRed), each with the pose
+            of the robot in odom at which it was received; those since the last tick.
         bumpers: Pressed bumpers, bits of kobuki_msgs/SensorState.
         charger: Charger state of kobuki_msgs/SensorState; 0 is discharging.
         scan: Latest scan; None for none.
@@ -113,7 +113,7 @@ class DockDecision:
 
 
 class StagingPort(Protocol):
-    """Client of move_base by which the robot is brought to the staging pose (see pick_objects.MoveBasePort)."""
+    """Client of move_base that drives the robot to the staging pose (see pick_objects.MoveBasePort)."""
 
     def send(self, goal: Pose2) -> None:
         """Send a goal in the map frame, which replaces any earlier one."""

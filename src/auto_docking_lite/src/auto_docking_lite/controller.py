@@ -24,6 +24,9 @@ class DockController:
         settings: Speeds, limits and expected field.
         navigation: Client of move_base; None if the robot shall only drive by itself.
         seed: Seed of the estimator of the dock's pose.
+
+    Attributes:
+        navigation: Client of move_base, if there is one.
     """
 
     def __init__(
@@ -32,7 +35,7 @@ class DockController:
         navigation: Optional[StagingPort] = None,
         seed: int = 0,
     ):
-        self._settings, self._navigation, self._seed = settings, navigation, seed
+        self._settings, self.navigation, self._seed = settings, navigation, seed
         self._task: Union[None, Docking, Undocking] = None
         self._started_at, self._is_cancelled = 0.0, False
 
@@ -48,7 +51,7 @@ class DockController:
             now: Time [s].
             dock_in_map: Pose of the dock, if it is known.
         """
-        self._begin(now, Docking(self._settings, self._navigation, dock_in_map, self._seed))
+        self._begin(now, Docking(self._settings, self.navigation, dock_in_map, self._seed))
 
     def undock(self, now: float) -> None:
         """Start undocking; a task that is active is abandoned.

@@ -26,7 +26,7 @@ from auto_docking_lite.motion import (
 from auto_docking_lite.poses import staging_pose
 from planar import Pose2, Twist2, wrap
 from planar.driving import DriveResult
-from planar.geometry.dock_field import CENTRE, NEAR, ROBOT_FRONT
+from planar.geometry.dock_field import NEAR, ROBOT_FRONT
 
 STOP = Twist2()
 ARRIVED = "Arrived on docking station successfully."
@@ -134,7 +134,7 @@ class Docking:
         return self._enter(DockState.SCAN, "searching for the dock")
 
     def _expected(self, inputs: DockInputs) -> Optional[Pose2]:
-        """Return the pose of the known dock in odom; None if it, or the robot's pose in the map, is unknown."""
+        """Return the pose of the known dock in odom; None if it, or the robot's in the map, is unknown."""
         if self._dock_in_map is None or inputs.odom_in_map is None:
             return None
         return inputs.odom_in_map.inverse() @ self._dock_in_map

@@ -12,7 +12,7 @@ import numpy as np
 from auto_docking_lite.config import DockingSettings
 from auto_docking_lite.kernels import log_likelihoods
 from planar import Pose2, wrap
-from planar.geometry.dock_field import CENTRE, LEFT, NEAR, RIGHT
+from planar.geometry.dock_field import CENTRE, FAR_CENTRE, LEFT, NEAR, RIGHT
 
 Signals = Tuple[int, int, int]
 PARTICLES, FIRST_PARTICLES = 400, 2000
@@ -111,7 +111,7 @@ class DockEstimator:
             self._resample(logs)
 
     def _is_news(self, base: Pose2, signals: Signals) -> bool:
-        """Return whether a signal adds information; if so, let the particles drift by the motion before it."""
+        """Return whether a signal adds information; if so, let the particles drift by the motion."""
         last = self._last
         if last is not None:
             distance, angle = last[0].distance_to(base), abs(wrap(base.yaw - last[0].yaw))
@@ -157,7 +157,9 @@ class DockEstimator:
         number = max(range(3), key=lambda each: (bool(signals[each]), bool(signals[each] & CENTRE)))
         receiver, byte = list(settings.receivers(base))[number], signals[number]
         near = bool(byte & NEAR)
-        low, high = (0.0, settings.dock_near_range) if near else (settings.dock_near_range, settings.dock_far_range)
+        low, high = (
+            (0.0, settings.dock_near_range) if near else (settings.dock_near_range, settings.dock_far_range)
+        )
         distance = rng.uniform(low, high, count)
         edge, limit = settings.dock_centre_half_angle, settings.dock_side_half_angle
         angle = rng.uniform(-edge, edge, count)
@@ -168,3 +170,8 @@ class DockEstimator:
         to_dock = receiver.yaw + rng.uniform(-opening, opening, count)
         x, y = receiver.x + distance * np.cos(to_dock), receiver.y + distance * np.sin(to_dock)
         return np.column_stack((x, y, to_dock + math.pi - angle))
+
+
+def warm_up() -> None:
+    """Compile the kernel, or load it from the cache, before the first signal needs it."""
+    DockEstimator(DockingSettings(), np.random.default_rng(0)).update([(Pose2(), (0, FAR_CENTRE, 0))])

@@ -30,8 +30,8 @@ def log_likelihoods(docks, bases, signals, field):
         docks: Poses (N, 3) of the dock.
         bases: Poses (K, 3) of the robot at each signal, in the same frame.
         signals: Bytes (K, 3) of the right, centre and left receiver.
-        field: Half angle of the centre fan, of all fans, near range, far range, bearing, half angle and radius
-            of the receivers (7,).
+        field: Half angle of the centre fan, of all fans, near range, far range, bearing, half angle and
+            radius of the receivers (7,).
     """
     centre_angle, side_angle, near, far, receiver_bearing, receiver_angle, radius = field
     result = np.zeros(docks.shape[0])

@@ -1,11 +1,9 @@
 """Docks that charge a Kobuki: putting one into a world."""
 
-import math
 from dataclasses import replace
 from typing import Tuple
 
 from planar import Pose2
-from planar.config.settings import check
 from sim_bridge.geometry.pose3 import from_pose2
 from sim_bridge.sdf.reader import MODELS, read_model
 from sim_bridge.world import Body, World
@@ -33,22 +31,3 @@ def with_dock(world: World, dock_in_world: Pose2, name: str = DOCK_NAME) -> Worl
         name: Name of the dock's model.
     """
     return replace(world, bodies=(*world.bodies, *dock_bodies(dock_in_world, name)))
-
-
-def dock_pose(text: str, parameter: str = "dock") -> Pose2:
-    """Return the pose of a parameter.
-
-    Args:
-        text: ``x y yaw`` [m, m, rad].
-        parameter: Name of the parameter, for messages.
-
-    Raises:
-        SettingsError: The text is not a pose.
-    """
-    try:
-        x, y, yaw = map(float, text.split())
-    except ValueError:
-        x = y = yaw = math.nan
-    pose = Pose2(x, y, yaw)
-    check(pose.is_in_range(), parameter, "a pose: x y yaw [m, m, rad]", text)
-    return pose

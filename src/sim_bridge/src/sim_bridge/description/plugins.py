@@ -11,11 +11,11 @@ from sim_bridge.description.structure import GazeboElements, RobotStructure
 from sim_bridge.driving.drive import DriveProfile
 from sim_bridge.errors import WorldError
 from sim_bridge.geometry.pose3 import IDENTITY
+from sim_bridge.power.battery import KOBUKI_BATTERY, TURTLEBOT3_BATTERY, BatteryProfile
 from sim_bridge.sdf.element import Element
 from sim_bridge.sdf.supported import plugin_name
 from sim_bridge.sdf.values import flag, length, number, text
 from sim_bridge.sensors.base import SensorSpec
-from sim_bridge.power.battery import KOBUKI_BATTERY, TURTLEBOT3_BATTERY, BatteryProfile
 from sim_bridge.sensors.camera import CameraProfile, scan_of
 from sim_bridge.sensors.dock_ir import DockIrProfile
 from sim_bridge.sensors.element import SensorElement, namespace_of

@@ -29,9 +29,7 @@ class ChargerState(enum.IntEnum):
 class BatterySettings:
     """Parameters of the battery of a simulated robot."""
 
-    battery_charge: float = parameter(
-        1.0, "charge of the battery at the start", bounds=Interval(0.0, 1.0)
-    )
+    battery_charge: float = parameter(1.0, "charge of the battery at the start", bounds=Interval(0.0, 1.0))
     battery_capacity: float = parameter(
         0.0, "capacity of the battery; 0: that of the robot's standard pack", "Ah", ZERO_OR_MORE
     )

@@ -11,8 +11,8 @@ class MotorProfile:
         constant: Torque per current [N m/A], which is also voltage per speed [V s/rad].
         resistance: Resistance of the winding [Ohm].
         friction: Torque of friction and rolling resistance [N m].
-        inertia: Inertia that the motor accelerates [kg m^2]: its share of the robot's mass times the square of
-            the wheel's radius.
+        inertia: Inertia that the motor accelerates [kg m^2]: its share of the robot's mass times the square
+            of the wheel's radius.
     """
 
     constant: float = 0.45

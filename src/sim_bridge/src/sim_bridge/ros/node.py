@@ -10,6 +10,7 @@ from visualization_msgs.msg import Marker
 
 from planar import PlanarError, Pose2
 from planar.config.settings import check
+from planar.geometry.pose import pose_of_text
 from planar_ros.lockstep import transport
 from planar_ros.lockstep.transport import LockstepConnection
 from planar_ros.messages.conversion import pose2_from_msg, time_of
@@ -18,7 +19,7 @@ from planar_ros.node.runner import run
 from rospy_transport.replacements import install
 from sim_bridge.config import BridgeSettings, RobotSettings, SimulationSettings
 from sim_bridge.description import read_sdf_robot
-from sim_bridge.docks import dock_pose, with_dock
+from sim_bridge.docks import with_dock
 from sim_bridge.geometry.pose3 import to_pose2
 from sim_bridge.noise import noise_named
 from sim_bridge.pacing import Pacer
@@ -65,7 +66,7 @@ class Bridge:
         robots = _robots_from_parameters(robot)
         world = world_of(settings)
         if settings.dock:
-            world = with_dock(world, dock_pose(settings.dock, "~dock"))
+            world = with_dock(world, pose_of_text(settings.dock, "~dock"))
         for warning in world.warnings:
             rospy.logwarn("%s", warning)
         self._calls = CallQueue()

@@ -102,7 +102,11 @@ def battery_state_msg(power: PowerReading, stamp: rospy.Time) -> BatteryState:
 
 def diagnostic_status(power: PowerReading, profile: BatteryProfile) -> DiagnosticStatus:
     """Return the diagnosis of a battery with the values of kobuki_node."""
-    discharging, ok, warn = power.charger is ChargerState.DISCHARGING, DiagnosticStatus.OK, DiagnosticStatus.WARN
+    discharging, ok, warn = (
+        power.charger is ChargerState.DISCHARGING,
+        DiagnosticStatus.OK,
+        DiagnosticStatus.WARN,
+    )
     level, text = warn, "Dangerous"
     if power.charger is ChargerState.DOCKING_CHARGED:
         level, text = ok, "Maximum"

@@ -26,9 +26,7 @@ class RobotSensorContext:
         field: Geometry of docks.
     """
 
-    def __init__(
-        self, vehicle: Vehicle, view: SceneView, power: Optional[PowerSystem], field: DockField
-    ):
+    def __init__(self, vehicle: Vehicle, view: SceneView, power: Optional[PowerSystem], field: DockField):
         self.stamp = 0.0
         self._vehicle = vehicle
         self._view = view

@@ -4,8 +4,8 @@ import rospy
 from kobuki_msgs.msg import BumperEvent, CliffEvent, SensorState, WheelDropEvent
 from sensor_msgs.msg import PointCloud2
 
-from sim_bridge.ros.kobuki.bumper_cloud import FRAME, BumperCloud
 from sim_bridge.power.system import PowerReading
+from sim_bridge.ros.kobuki.bumper_cloud import FRAME, BumperCloud
 from sim_bridge.ros.publishers import RobotPublishers
 from sim_bridge.sensors.kobuki import SECTOR_BITS, KobukiProfile, KobukiReading
 
