@@ -18,7 +18,7 @@ LATENCY = 0.1
 
 @dataclass(frozen=True)
 class SimulationSettings(NoiseSettings, BatterySettings, DockField):
-    """Rates, noise, battery and docks of a simulation; rates are in simulated time and divide ``physics_rate``.
+    """Rates, noise, battery and docks of a simulation; rates in simulated time divide ``physics_rate``.
 
     Raises:
         SettingsError: A value is out of its bounds, or a rate does not divide ``physics_rate``.
