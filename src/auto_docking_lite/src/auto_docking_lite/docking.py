@@ -16,6 +16,7 @@ from auto_docking_lite.contract import (
 )
 from auto_docking_lite.estimator import DockEstimate, DockEstimator
 from auto_docking_lite.motion import (
+    LOOKAHEAD,
     drive_to,
     follow_line,
     is_free,
@@ -44,6 +45,8 @@ GATE, GATE_ERRORS = 0.12, (0.06, 0.3)
 BACKING, BACKING_SPEED = 0.3, 0.15
 # Time without progress at the dock [s], and distance by which the robot may drive on past it [m].
 STALLED, OVERSHOOT = 3.0, 0.06
+# Distance that counts as progress, and by which obstacles may be nearer during the approach [m].
+MOVED, MARGIN = 0.01, 0.02
 # Time without a signal during the approach after which the robot searches again [s].
 LOST = 4.0
 # Bearings of the staging poses of the attempts, and of stopovers on the way around an obstacle [rad].
@@ -79,6 +82,7 @@ class Docking:
         self._attempt, self._turned, self._last_yaw, self._side = 0, 0.0, 0.0, 0.0
         self._since: Dict[str, float] = {}
         self._backed_to: Optional[Pose2] = None
+        self._moved_to: Optional[Pose2] = None
         self._is_sent = False
         self._handlers: Dict[DockState, Callable[[DockInputs], Optional[Twist2]]] = {
             DockState.IDLE: self._begin,
@@ -257,6 +261,8 @@ class Docking:
         if not self._is_path_free(inputs, in_dock):
             return self._wait(inputs, DockCode.FAILED_TO_CONTROL, "something is before the dock")
         self._since.pop("blocked", None)
+        if self._is_stalled(inputs):
+            return self._retry(DockCode.FAILED_TO_CHARGE, "no progress at the dock, which does not charge")
         is_near = any(signal & NEAR for _, signals in inputs.signals for signal in signals)
         self.state = DockState.ALIGNED_NEAR if is_near else DockState.ALIGNED_FAR
         return follow_line(in_dock, front.x, self._settings)
@@ -281,8 +287,17 @@ class Docking:
         """Return whether nothing but the dock, and what is behind it, is ahead."""
         points = base_in_dock.transform_points(obstacles_in_base(inputs.scan))
         points = points[points[:, 0] > ROBOT_FRONT / 2.0]
-        ahead = Pose2(max(base_in_dock.x - 0.4, ROBOT_FRONT), base_in_dock.y)
-        return is_free(points, base_in_dock, ahead, self._settings.robot_radius - 0.02)
+        radius = self._settings.robot_radius - MARGIN
+        near, far = (Pose2(max(base_in_dock.x - factor * LOOKAHEAD, ROBOT_FRONT)) for factor in (1.0, 2.0))
+        return is_free(points, base_in_dock, near, radius) and is_free(points, near, far, radius)
+
+    def _is_stalled(self, inputs: DockInputs) -> bool:
+        """Return whether the robot has not moved for some time although it shall."""
+        base = inputs.base_in_odom
+        if self._moved_to is None or base.distance_to(self._moved_to) > MOVED:
+            self._moved_to = base
+            self._since["moved"] = inputs.stamp
+        return inputs.stamp - self._since.setdefault("moved", inputs.stamp) > STALLED
 
     def _charge(self, inputs: DockInputs) -> Twist2:
         """Stand still on the contacts until the robot has charged for a while."""
