@@ -75,7 +75,8 @@ def scene_of(seed: int, options: Options) -> Tuple[World, np.ndarray]:
     """Return a world with a dock at the origin, and the boxes in it as circles (N, 3): x, y, radius [m]."""
     rng = np.random.default_rng([seed, 1])
     floor = Body("floor::link", np.eye(4), (Collision(Plane(), np.eye(4)),))
-    bodies, circles = [floor, box_on_floor("wall", (0.1, 8.0, 1.0), Pose2(-0.13, 0.0))], []
+    bodies = [floor, box_on_floor("wall", (0.1, 8.0, 1.0), Pose2(-0.13, 0.0))]
+    circles: List[Tuple[float, float, float]] = []
     for number in range(int(rng.integers(0, options.clutter + 1))):
         size = rng.uniform(0.1, 0.5, 2)
         radius = float(np.hypot(*size)) / 2.0

@@ -122,7 +122,7 @@ class RobotSettings:
 
 
 # Parameters that are set by arguments of the launch file.
-ARGUMENTS = ("world", "seed", "speed", "wait_for", "static_publishers")
+ARGUMENTS = ("world", "dock", "seed", "speed", "wait_for", "static_publishers")
 _NOISE_VALUES = {each.name for each in parameters_of(NoiseSettings)}
 
 CONFIG_FILES = {
