@@ -189,6 +189,8 @@ def main() -> int:
     with multiprocessing.get_context("spawn").Pool(given.jobs) as pool:
         for done in pool.imap(partial(run_scene, options), scenes):
             starts += done
+            docked = sum(start.is_docked for start in starts)
+            print(f"{docked} of {len(starts)} docked", file=sys.stderr, flush=True)
     starts = starts[: given.starts]
     print(report(starts, (time.monotonic() - begin) * given.jobs))
     if given.failures:
