@@ -17,7 +17,7 @@ LAYERS = (
     {"supervision", "run_report"},
     {"planar_ros"},
     {"sim_bridge", "map_lite", "amcl_lite", "slam_lite", "move_base_lite", "explorer_lite"}
-    | {"pick_objects", "add_markers", "follow_me", "teleop_lite"},
+    | {"pick_objects", "add_markers", "follow_me", "teleop_lite", "auto_docking_lite"},
     {"cockpit"},
     {"evaluation"},
     {"headless_mission"},

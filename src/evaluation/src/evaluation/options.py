@@ -5,12 +5,17 @@ from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any, Dict, Mapping, Optional, Tuple
 
-from supervision.command_line import option, seconds, seed
+from planar import Pose2
+from planar.geometry.pose import pose_of_text
+from planar.maps.places import load_places
+from supervision.command_line import number, option, seconds, seed
 from supervision.view_options import ViewOptions
 
 ROOT = Path(__file__).resolve().parents[4]
 HOME_WORLD, HOME_MAP = ROOT / "map/home.world", ROOT / "map/home.yaml"
 RUN_SECONDS = 900.0
+# Place of the zones at which a dock stands; its pose is that of the dock.
+DOCK_PLACE = "dock"
 # Options that are written to result.json under their names.
 RESULT_OPTIONS = ("seed", "world", "robot", "map", "mission")
 
@@ -35,6 +40,21 @@ class WorldOptions:
         metavar="NAME|FILE",
     )
     seed: int = option(0, "seed of all noise and particles", type=seed)
+    dock: Optional[Tuple[float, float, float]] = option(
+        None,
+        "pose of a charging dock in the world: its front, facing YAW (default: the place dock of the zones)",
+        nargs=3,
+        type=number,
+        metavar=("X", "Y", "YAW"),
+    )
+
+    def dock_in_world(self) -> Optional[Pose2]:
+        """Return the pose of the dock; None if there is none.
+
+        Raises:
+            SettingsError: The pose is out of range.
+        """
+        return None if self.dock is None else pose_of_text(" ".join(map(repr, self.dock)), "--dock")
 
 
 @dataclass(frozen=True)
@@ -82,6 +102,17 @@ class ErrandOptions(HomeOptions):
     """A home with zones."""
 
     zones: Path = option(ROOT / "map/zones.yaml", "YAML of the zones", type=Path)
+
+    def dock_in_world(self) -> Optional[Pose2]:
+        """Return the pose of ``--dock``, else that of the place ``dock`` of the zones, else None.
+
+        Raises:
+            PlanarError: The pose is out of range, or the zones cannot be read.
+        """
+        if self.dock is not None:
+            return super().dock_in_world()
+        place = load_places(self.zones).get(DOCK_PLACE)
+        return None if place is None else place.pose
 
     def files(self) -> Dict[str, Any]:
         return {**super().files(), "zones_file": self.zones.resolve()}
@@ -176,6 +207,9 @@ class GraphOptions(RunOptions, WorldOptions):
         """Return the plan for a launch file of home_service with this world, robot and seed."""
         world = {"world_file": self.world.resolve(), "robot": self.robot, "seed": self.seed}
         strict = {"strict": "true"} if self.strict else {}
+        dock = self.dock_in_world()
+        if dock is not None:
+            arguments = {**arguments, "dock": f"{dock.x!r} {dock.y!r} {dock.yaw!r}"}
         return LaunchPlan(file, {**world, **strict, **arguments}, bags=self.record)
 
 

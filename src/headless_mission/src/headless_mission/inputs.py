@@ -15,6 +15,7 @@ from pick_objects import Mission, errand_mission, load_mission
 from planar import OccupancyGrid, Pose2, SettingsError, load_map
 from planar.maps.places import NamedPlace, load_pickup_and_dropoff, load_places, unreachable_reason
 from sim_bridge import RobotProfile, load_world, robot_named
+from sim_bridge.docks import with_dock
 from sim_bridge.world import World
 
 # Frames of the launch files of localization, SLAM and navigation (REP 105).
@@ -50,7 +51,13 @@ def read_world(options: WorldOptions) -> WorldInputs:
     Raises:
         PlanarError: As all functions below, with the name of what cannot be read.
     """
-    return WorldInputs(load_world(options.world), robot_named(options.robot))
+    return WorldInputs(_world_of(options), robot_named(options.robot))
+
+
+def _world_of(options: WorldOptions) -> World:
+    """Return the world, with the dock of the options."""
+    world, dock = load_world(options.world), options.dock_in_world()
+    return world if dock is None else with_dock(world, dock)
 
 
 def read_home(options: HomeOptions) -> HomeInputs:
@@ -62,7 +69,7 @@ def read_home(options: HomeOptions) -> HomeInputs:
             f"  ./scripts/map_home.sh --world {options.world} --save {stem}\n"
             f"makes one for --map {stem}.yaml"
         )
-    world, grid, robot = load_world(options.world), load_map(options.map), robot_named(options.robot)
+    world, grid, robot = _world_of(options), load_map(options.map), robot_named(options.robot)
     if isinstance(options, GraphOptions):
         check_frames(options.robot, robot)
     return HomeInputs(world, robot, grid)

@@ -6,7 +6,9 @@ from dataclasses import dataclass
 from planar.config.config_file import Section
 from planar.config.parameters import POSITIVE, Interval, check_parameters, parameter, parameters_of
 from planar.config.settings import check
+from planar.geometry.dock_field import DockField
 from sim_bridge.noise import NOISE_PROFILES, NOT_NEGATIVE, NoiseSettings
+from sim_bridge.power.battery import BatterySettings
 
 # With more, a single period of the odometry would take seconds [Hz].
 MAX_PHYSICS_RATE = 100_000
@@ -15,8 +17,8 @@ LATENCY = 0.1
 
 
 @dataclass(frozen=True)
-class SimulationSettings(NoiseSettings):
-    """Rates and noise of a simulation; rates are in simulated time and must divide ``physics_rate``.
+class SimulationSettings(NoiseSettings, BatterySettings, DockField):
+    """Rates, noise, battery and docks of a simulation; rates in simulated time divide ``physics_rate``.
 
     Raises:
         SettingsError: A value is out of its bounds, or a rate does not divide ``physics_rate``.
@@ -59,6 +61,7 @@ class BridgeSettings(RunTimeSettings):
     """Parameters of the node sim_bridge, beside those of SimulationSettings."""
 
     world: str = parameter("", "SDF file of the world", required="the path of an SDF file")
+    dock: str = parameter("", "pose of a dock in the world: x y yaw [m, rad]; empty: none but the world's")
     seed: int = parameter(0, "seed of all noise", bounds=NOT_NEGATIVE)
     wait_for: str = parameter(
         "", "names of the nodes, separated by spaces, that are synchronised with the simulation"
@@ -121,7 +124,7 @@ class RobotSettings:
 
 
 # Parameters that are set by arguments of the launch file.
-ARGUMENTS = ("world", "seed", "speed", "wait_for", "static_publishers")
+ARGUMENTS = ("world", "dock", "seed", "speed", "wait_for", "static_publishers")
 _NOISE_VALUES = {each.name for each in parameters_of(NoiseSettings)}
 
 CONFIG_FILES = {

@@ -15,6 +15,7 @@ from sim_bridge.description.bodies import bodies_of
 from sim_bridge.driving.drive import BASE_RATE, OmnidirectionalDrive, RampedDrive, WheelDrive
 from sim_bridge.physics.engine import Engine
 from sim_bridge.physics.vehicle import Vehicle
+from sim_bridge.power.system import POWER_SECONDS, PowerReading, PowerSystem
 from sim_bridge.sensors.base import Mounting, Reading, Sensor, SensorSpec
 from sim_bridge.sensors.context import RobotSensorContext
 from sim_bridge.sensors.kobuki import KobukiReading
@@ -49,6 +50,7 @@ class StepResult:
         wheels: Latest wheel angles [rad] and speeds [rad/s].
         contacts: Names (``model::link``) of what the robot collided with since the last step.
         scanner: Name of the first range finder; empty if there is none.
+        power: Latest state of the power system; None if the robot has none.
     """
 
     stamp: float
@@ -58,6 +60,7 @@ class StepResult:
     wheels: WheelState
     contacts: Tuple[str, ...]
     scanner: str = ""
+    power: Optional[PowerReading] = None
 
     @property
     def base_in_world(self) -> Pose2:
@@ -135,7 +138,7 @@ class Robot:
         self.vehicle = Vehicle(
             engine, name, *parts, len(drive.left_joints), drive.torque, mounting.base_in_space
         )
-        self._context = RobotSensorContext(self.vehicle, view)
+        self._view = view
         self.specs: Dict[str, SensorSpec] = {}
         self.reset(mounting)
 
@@ -146,11 +149,14 @@ class Robot:
             mounting: Start pose, settings and seed of the new start.
         """
         self._set_rates(mounting.settings)
+        battery = self.profile.battery
+        self._power = PowerSystem(battery, mounting.settings) if battery is not None else None
+        self._context = RobotSensorContext(self.vehicle, self._view, self._power, mounting.settings)
+        self._power_reading = self._context.power
         drive, odometry = self.profile.drive, self.profile.odometry
         self._controller = OmnidirectionalDrive(drive) if drive.is_omnidirectional else RampedDrive(drive)
         self._drive = self._wrappers.drive(self._controller)
         self._context.refresh(0.0)
-        self._context.clear_contacts()
         truth, wheels, contacts = GroundTruth(), WheelEncoders(), ContactSensor()
         self._odometer = Odometer(odometry, odometry.build(drive, mounting))
         self._latest: Dict[str, Any] = {
@@ -183,8 +189,8 @@ class Robot:
         self._drive.halt()
 
     def switch_motors(self, on: bool) -> None:
-        """Switch motor power; without it commands are ignored."""
-        self._drive.switch(on)
+        """Switch motor power; without it, or with an empty battery, commands are ignored."""
+        self._drive.switch(on and not (self._power is not None and self._power.is_empty))
 
     def reset_odometry(self) -> None:
         """Reset the odometry to the origin of its frame."""
@@ -206,6 +212,7 @@ class Robot:
         """Compute the interval, in physics steps, at which motors are set and contacts read."""
         self._settings = settings
         self._interval = max(settings.physics_rate // BASE_RATE, 1)
+        self._power_interval = self._interval * max(round(POWER_SECONDS * BASE_RATE), 1)
         self.vehicle.invalidate_speeds()
 
     def _count_steps(self) -> None:
@@ -245,6 +252,8 @@ class Robot:
         """
         if step % self._interval == 0:
             self._context.record_contacts()
+            if step % self._power_interval == 0 and self._power is not None:
+                self._update_power(self._power, stamp)
         if step < self._next_step:
             return
         self._context.refresh(stamp)
@@ -268,7 +277,17 @@ class Robot:
             wheels=self._latest[WheelEncoders.name],
             contacts=self._latest[ContactSensor.name],
             scanner=self.profile.scanner,
+            power=self._power_reading,
         )
+
+    def _update_power(self, power: PowerSystem, stamp: float) -> None:
+        """Charge or discharge the battery; the motors of a robot with an empty one stop for good."""
+        self._context.refresh(stamp)
+        seconds = self._power_interval / self._settings.physics_rate
+        power.update(seconds, self._context.wheels[0], self._context.is_on_dock())
+        self._power_reading = self._context.power
+        if power.is_empty:
+            self._drive.switch(False)
 
     def _mount(self, sensor: Sensor[Any]) -> str:
         """Mount a sensor and return its name, with a number appended if the name is taken."""

@@ -93,6 +93,7 @@ class Body:
         damping: Damping of the linear and angular velocity [1/s].
         has_gravity: Whether gravity acts on the body.
         is_kinematic: Whether a script moves the body: a trajectory, a pedestrian or a door.
+        is_dock: Whether it is a dock that charges a Kobuki (see sim_bridge.docks).
     """
 
     name: str
@@ -106,6 +107,7 @@ class Body:
     damping: Tuple[float, float] = (0.0, 0.0)
     has_gravity: bool = True
     is_kinematic: bool = False
+    is_dock: bool = False
 
     @property
     def model(self) -> str:

@@ -6,7 +6,7 @@ from typing import Any, Mapping, Tuple
 
 import numpy as np
 
-from planar.errors import OutOfRangeError
+from planar.errors import OutOfRangeError, SettingsError
 from planar.geometry.limits import MAX_ANGLE, MAX_COORDINATE
 
 
@@ -100,6 +100,26 @@ def check_pose(pose: Pose2, what: str) -> None:
     """Raise OutOfRangeError if a pose, called ``what`` in the message, is out of range."""
     if not pose.is_in_range():
         raise OutOfRangeError(f"{what} at {pose.x:g}, {pose.y:g}, {pose.yaw:g} is out of range")
+
+
+def pose_of_text(text: str, name: str) -> Pose2:
+    """Return the pose of a parameter.
+
+    Args:
+        text: ``x y yaw`` [m, m, rad].
+        name: Name of the parameter, for messages.
+
+    Raises:
+        SettingsError: The text is not a pose.
+    """
+    try:
+        x, y, yaw = map(float, text.split())
+    except ValueError:
+        x = y = yaw = math.nan
+    pose = Pose2(x, y, yaw)
+    if not pose.is_in_range():
+        raise SettingsError(f"{name} must be a pose, x y yaw [m, m, rad], got {text!r}")
+    return pose
 
 
 @dataclass(frozen=True)

@@ -11,11 +11,13 @@ from sim_bridge.description.structure import GazeboElements, RobotStructure
 from sim_bridge.driving.drive import DriveProfile
 from sim_bridge.errors import WorldError
 from sim_bridge.geometry.pose3 import IDENTITY
+from sim_bridge.power.battery import KOBUKI_BATTERY, TURTLEBOT3_BATTERY, BatteryProfile
 from sim_bridge.sdf.element import Element
 from sim_bridge.sdf.supported import plugin_name
 from sim_bridge.sdf.values import flag, length, number, text
 from sim_bridge.sensors.base import SensorSpec
 from sim_bridge.sensors.camera import CameraProfile, scan_of
+from sim_bridge.sensors.dock_ir import DockIrProfile
 from sim_bridge.sensors.element import SensorElement, namespace_of
 from sim_bridge.sensors.imu import ImuProfile
 from sim_bridge.sensors.kobuki import KobukiProfile
@@ -44,6 +46,7 @@ class PluginProfiles:
         sensors: Specifications of the sensors.
         joint_states: Published joints, if any.
         namespace: Namespace of the drive's plugin.
+        battery: The battery, if it is a robot's whose battery is known.
         warnings: A sentence for each kind of content that is ignored.
     """
 
@@ -52,6 +55,7 @@ class PluginProfiles:
     sensors: List[SensorSpec] = field(default_factory=list)
     joint_states: Optional[JointStateProfile] = None
     namespace: str = ""
+    battery: Optional[BatteryProfile] = None
     warnings: List[str] = field(default_factory=list)
 
 
@@ -106,6 +110,8 @@ def _read_diff_drive(plugin: Element, structure: RobotStructure, profiles: Plugi
     acceleration = number(plugin, "wheelAcceleration", 0.0)
     joints = [text(plugin, "leftJoint", "left_joint"), text(plugin, "rightJoint", "right_joint")]
     profiles.namespace = namespace_of(plugin)
+    if structure.name.startswith("turtlebot3"):
+        profiles.battery = TURTLEBOT3_BATTERY
     profiles.drive = _drive(
         plugin,
         structure,
@@ -203,6 +209,7 @@ def _read_planar_move(plugin: Element, structure: RobotStructure, profiles: Plug
 
 def _read_kobuki(plugin: Element, structure: RobotStructure, profiles: PluginProfiles) -> None:
     joints = [plugin.required(f"{side}_wheel_joint_name").text for side in ("left", "right")]
+    profiles.battery = KOBUKI_BATTERY
     profiles.namespace = namespace_of(plugin)
     profiles.drive = _drive(
         plugin,
@@ -228,6 +235,7 @@ def _read_kobuki(plugin: Element, structure: RobotStructure, profiles: PluginPro
     hubs = [structure.pose_in_base(structure.joints[name].child)[:3, 3] for name in profiles.drive.joints]
     threshold = length(plugin, "cliff_detection_threshold", 0.04)
     profiles.sensors.append(KobukiProfile(np.array(hubs), profiles.drive.wheel_radius, threshold))
+    profiles.sensors.append(DockIrProfile())
 
 
 def _read_joint_states(plugin: Element, structure: RobotStructure, profiles: PluginProfiles) -> None:

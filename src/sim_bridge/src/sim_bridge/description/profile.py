@@ -7,6 +7,7 @@ from typing import Optional, Set, Tuple, Type, TypeVar
 
 from sim_bridge.description.structure import RobotModel
 from sim_bridge.driving.drive import DriveProfile
+from sim_bridge.power.battery import BatteryProfile
 from sim_bridge.sensors.base import SensorSpec
 from sim_bridge.sensors.lidar import LaserProfile
 from sim_bridge.sensors.odometry import OdometryProfile
@@ -41,6 +42,7 @@ class RobotProfile:
         odometry: Source, topic and frames of its odometry.
         sensors: Specifications of its sensors.
         joint_states: Published joints, if any.
+        battery: Its battery; None for a robot that never needs to be charged.
         namespace: Namespace of its topics, as its description requests.
         warnings: A sentence for each kind of content of the description that is ignored.
     """
@@ -53,6 +55,7 @@ class RobotProfile:
     sensors: Tuple[SensorSpec, ...] = ()
     joint_states: Optional[JointStateProfile] = None
     namespace: str = ""
+    battery: Optional[BatteryProfile] = None
     warnings: Tuple[str, ...] = field(default=())
 
     def description(self) -> str:

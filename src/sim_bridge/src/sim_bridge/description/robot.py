@@ -134,5 +134,6 @@ def _profile(
         sensors=tuple(profiles.sensors),
         joint_states=profiles.joint_states,
         namespace=profiles.namespace,
+        battery=profiles.battery,
         warnings=(*profiles.warnings, *elements.skipped.lines()),
     )

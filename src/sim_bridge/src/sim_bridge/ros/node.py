@@ -11,6 +11,7 @@ from visualization_msgs.msg import Marker
 
 from planar import PlanarError, Pose2
 from planar.config.settings import check
+from planar.geometry.pose import pose_of_text
 from planar_ros.lockstep import transport
 from planar_ros.lockstep.transport import LockstepConnection
 from planar_ros.messages.conversion import pose2_from_msg, time_of
@@ -19,6 +20,7 @@ from planar_ros.node.runner import run
 from rospy_transport.replacements import install
 from sim_bridge.config import BridgeSettings, RobotSettings, SimulationSettings
 from sim_bridge.description import RobotProfile, read_sdf_robot
+from sim_bridge.docks import with_dock
 from sim_bridge.geometry.pose3 import to_pose2
 from sim_bridge.noise import noise_named
 from sim_bridge.pacing import Pacer
@@ -64,6 +66,8 @@ class Bridge:
         self._clock_steps = _steps_between(settings.clock_rate, rate, "clock_rate")
         joint_steps = _steps_between(settings.joint_state_rate, rate, "joint_state_rate")
         world = world_of(settings)
+        if settings.dock:
+            world = with_dock(world, pose_of_text(settings.dock, "~dock"))
         robots = _robots_of(world, robot)
         profiles = (profile for _, profile, *_ in robots)
         log_warnings([*world.warnings, *chain(*(each.warnings for each in profiles))], settings.strict)

@@ -16,6 +16,7 @@ from sim_bridge.ros.command_topics import CommandTopics, MuxTopics
 from sim_bridge.ros.kobuki.commands import KobukiCommands
 from sim_bridge.ros.messages import covariance_of
 from sim_bridge.ros.motion_messages import OdometryMsg, TransformMsg
+from sim_bridge.ros.power_topics import PowerTopics
 from sim_bridge.ros.publishers import CountingPublisher, RobotPublishers
 from sim_bridge.ros.sensor_topics import RobotSensorTopics
 from sim_bridge.scene import Scene
@@ -47,6 +48,7 @@ class RobotTopics:
         self._scene = scene
         self._profile = profile = scene.robot(name).profile
         self._publishers = publishers = RobotPublishers(namespace, tf_prefix)
+        is_kobuki = bool(profile.sensors_of(KobukiProfile))
         self._steps = 0
         self._odom_steps = self._steps_of(profile.odometry.rate, 1)
         self._contacts: Optional[Tuple[str, ...]] = None
@@ -58,11 +60,12 @@ class RobotTopics:
         self._truth_msg = OdometryMsg(WORLD_FRAME, base_frame, [0.0] * 36)
         self._transform = TransformMsg(odom_frame, base_frame)
         self._sensors = RobotSensorTopics(scene.robot(name), publishers)
+        battery = profile.battery
+        self._power = PowerTopics(battery, publishers, is_kobuki) if battery is not None else None
         self._contacts_topic = publishers.publisher("contacts", String, latch=True)
         if profile.joint_states is not None:
             self._joints = publishers.publisher(profile.joint_states.topic, JointState)
             self._joint_steps = self._steps_of(profile.joint_states.rate, joint_steps)
-        is_kobuki = bool(profile.sensors_of(KobukiProfile))
         commands = MuxTopics if is_kobuki else CommandTopics
         self._commands = commands(name, namespace, profile.drive.command_topics)
         self._kobuki = KobukiCommands(scene, name, namespace, calls) if is_kobuki else None
@@ -88,6 +91,8 @@ class RobotTopics:
             self._contacts = observation.contacts
             self._contacts_topic.publish("\n".join(observation.contacts))
         self._sensors.publish(observation)
+        if self._power is not None and observation.power is not None:
+            self._power.publish(observation.power, stamp)
         for text in self._scene.view.warnings:
             rospy.logwarn_once(text)
         if self._steps % self._odom_steps:

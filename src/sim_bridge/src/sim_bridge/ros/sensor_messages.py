@@ -1,12 +1,14 @@
 """Conversion of readings to messages; the publisher fills in the header."""
 
 from geometry_msgs.msg import Quaternion, Vector3
+from kobuki_msgs.msg import DockInfraRed
 from sensor_msgs.msg import Imu
 
 from planar import Scan
 from planar_ros.messages.conversion import LaserScanArrays
 from sim_bridge.geometry.pose3 import quaternion
 from sim_bridge.ros.messages import covariance_of
+from sim_bridge.sensors.dock_ir import DockIrProfile, DockSignals
 from sim_bridge.sensors.imu import ImuProfile, ImuReading
 from sim_bridge.sensors.lidar import LaserProfile
 
@@ -34,3 +36,8 @@ def imu_to_msg(reading: ImuReading, profile: ImuProfile) -> Imu:
         linear_acceleration=Vector3(*reading.acceleration),
         linear_acceleration_covariance=covariance_of(profile.acceleration_variances),
     )
+
+
+def dock_ir_to_msg(signals: DockSignals, _profile: DockIrProfile) -> DockInfraRed:
+    """Return the message of the right, centre and left receiver's bytes; its header is set later."""
+    return DockInfraRed(data=bytes(signals))

@@ -9,7 +9,7 @@ import numpy as np
 from sim_bridge.sdf.element import Element, parse, parse_text
 from sim_bridge.sdf.frames import SdfFrames
 from sim_bridge.sdf.includes import has_model, model_file, resolve
-from sim_bridge.sdf.supported import DRIVES, plugin_name
+from sim_bridge.sdf.supported import DOCK, DRIVES, plugin_name
 from sim_bridge.sdf.warnings import SkippedElements
 
 MAX_INCLUDE_DEPTH = 20
@@ -58,6 +58,11 @@ class SdfModel:
         return not self.is_static and any(
             child.tag == "plugin" and plugin_name(child) in DRIVES for child in self.element.children()
         )
+
+    @property
+    def is_dock(self) -> bool:
+        """Whether it is a dock."""
+        return any(plugin_name(plugin) == DOCK for plugin in self.element.children("plugin"))
 
     def add(self, model: "SdfModel") -> None:
         """Add a nested model."""

@@ -36,6 +36,8 @@ from sim_bridge.world import (
 DEFAULT_GRAVITY = 9.8
 # Default step of Gazebo's physics [s].
 GAZEBO_STEP = 0.001
+# Folder of the models that are part of sim_bridge; those of other folders take precedence.
+MODELS = Path(__file__).resolve().parents[1] / "models"
 
 
 def load_world(path, model_folders: Sequence[Path] = (), strict: bool = False) -> World:
@@ -94,7 +96,7 @@ class _SdfReader:
         self._robots: List[DrivenModel] = []
         self._lights: List[Light] = []
         self._trajectories: List[ScriptedTrajectory] = []
-        self._model_folders = model_folders
+        self._model_folders = model_folders = (*model_folders, MODELS)
         self._warnings = warnings
         self._models = ModelReader(model_folders, warnings)
 
@@ -245,6 +247,7 @@ class _SdfReader:
             Inertia() if fixed else read_inertia(link, self._warnings),
             read_damping(link, self._step),
             gravity is None or link.flag("gravity"),
+            is_dock=model.is_dock and fixed,
         )
 
     def _collisions(

@@ -92,6 +92,9 @@ REDUNDANT_PLUGINS = frozenset(
     "gazebo_ros_properties gazebo_ros_force_system actor_collisions ActorCollisionsPlugin GrabPlugin".split()
 )
 
+# Plugin, of sim_bridge only, that makes a static model a dock which charges a Kobuki.
+DOCK = "gazebo_ros_kobuki_dock"
+
 
 def plugin_name(plugin: Element) -> str:
     """Return the library of a <plugin> without prefix and suffix, e.g. ``gazebo_ros_laser``."""

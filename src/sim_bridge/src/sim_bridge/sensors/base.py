@@ -11,11 +11,12 @@ from typing import Any, Generic, List, NamedTuple, Optional, Protocol, Sequence,
 
 import numpy as np
 
-from planar import Twist2
+from planar import Pose2, Twist2
 from planar.deprecation import deprecated_names
 from sim_bridge.config import SimulationSettings
 from sim_bridge.physics.collision_queries import Contact
 from sim_bridge.physics.kinematics import KinematicState
+from sim_bridge.power.system import PowerReading
 
 Value = TypeVar("Value")
 Measurement = TypeVar("Measurement", covariant=True)
@@ -111,6 +112,12 @@ class SensorContext(Protocol):
         Returns:
             The length (N,) of each ray, infinite without a hit [m], and the laser_retro (N,) of what it hits.
         """
+    def docks(self) -> List[Pose2]:
+        """Return the poses of all docks in the world."""
+
+    @property
+    def power(self) -> Optional[PowerReading]:
+        """State of the robot's power system; None if it has none."""
 
     def triangles(self) -> Tuple[np.ndarray, np.ndarray]:
         """Return the surfaces of all but the robot.

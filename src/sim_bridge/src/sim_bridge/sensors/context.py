@@ -4,10 +4,13 @@ from typing import Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from planar import Twist2
+from planar import Pose2, Twist2
+from planar.geometry.dock_field import DockField
+from sim_bridge.geometry.pose3 import to_pose2
 from sim_bridge.physics.collision_queries import Contact
 from sim_bridge.physics.kinematics import KinematicState
 from sim_bridge.physics.vehicle import Vehicle, twist_in_base
+from sim_bridge.power.system import PowerReading, PowerSystem
 from sim_bridge.views.scene_view import SceneView
 
 Wheels = Tuple[Tuple[float, ...], Tuple[float, ...]]
@@ -19,12 +22,15 @@ class RobotSensorContext:
     Args:
         vehicle: The robot.
         view: The sensors' view of the scene.
+        power: Power system of the robot, if it has one.
+        field: Geometry of docks.
     """
 
-    def __init__(self, vehicle: Vehicle, view: SceneView):
+    def __init__(self, vehicle: Vehicle, view: SceneView, power: Optional[PowerSystem], field: DockField):
         self.stamp = 0.0
         self._vehicle = vehicle
         self._view = view
+        self._power, self._field = power, field
         self._base: Optional[KinematicState] = None
         self._twist: Optional[Twist2] = None
         self._wheels: Optional[Wheels] = None
@@ -86,6 +92,20 @@ class RobotSensorContext:
         lengths, links = self._vehicle.cast_rays(origin, directions, max_range)
         retros = {link: self._view.laser_retro(link) for link in set(links)}
         return lengths, np.array([retros[link] for link in links])
+    def docks(self) -> List[Pose2]:
+        return self._view.docks()
+
+    @property
+    def power(self) -> Optional[PowerReading]:
+        return None if self._power is None else self._power.reading(self.is_on_dock())
+
+    def is_on_dock(self) -> bool:
+        """Return whether the robot touches the contacts of a dock; only a Kobuki has the fitting ones."""
+        docks = self.docks()
+        if not docks or self._power is None or not self._power.profile.fits_dock:
+            return False
+        base = to_pose2(self.base.pose)
+        return any(self._field.has_contact(dock.inverse() @ base) for dock in docks)
 
     def triangles(self) -> Tuple[np.ndarray, np.ndarray]:
         return self._view.triangles(self._vehicle.name)

@@ -2,12 +2,13 @@
 
 import math
 from dataclasses import dataclass
-from typing import Dict, FrozenSet
+from typing import Dict, FrozenSet, Optional
 
 import numpy as np
 
 from sim_bridge.config import SimulationSettings
 from sim_bridge.geometry.pose3 import transform_points
+from sim_bridge.power.system import PowerReading
 from sim_bridge.sensors.base import Mounting, Schedule, SensorContext, every
 
 LEFT, CENTRE, RIGHT = 0, 1, 2
@@ -17,6 +18,8 @@ SECTORS = {
     CENTRE: (-math.radians(30.0), math.radians(30.0)),
     RIGHT: (-math.radians(90.0), -math.radians(30.0)),
 }
+# Bits of the bumpers and cliff sensors in kobuki_msgs/SensorState.
+SECTOR_BITS = {RIGHT: 1, CENTRE: 2, LEFT: 4}
 LOWEST, HIGHEST = 0.01, 0.13
 # Positions of the cliff sensors in the base frame [m] (kobuki_description).
 CLIFF_SENSORS: Dict[int, np.ndarray] = {
@@ -36,11 +39,13 @@ class KobukiReading:
         bumpers: Pressed sectors.
         cliffs: Sectors without a floor below.
         dropped: Dropped wheels: left 0, right 1.
+        power: State of the power system.
     """
 
     bumpers: FrozenSet[int] = frozenset()
     cliffs: FrozenSet[int] = frozenset()
     dropped: FrozenSet[int] = frozenset()
+    power: Optional[PowerReading] = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,10 +89,10 @@ class KobukiSensors:
             touched = np.array([bump.point for bump in context.bumps])
             bumpers = pressed(transform_points(np.linalg.inv(base_in_world), touched))
         if not any(is_deep):
-            return KobukiReading(bumpers)
+            return KobukiReading(bumpers, power=context.power)
         cliffs = (sector for sector, deep in zip(CLIFF_SENSORS, is_deep) if deep)
         dropped = (wheel for wheel, deep in enumerate(is_deep[len(CLIFF_SENSORS) :]) if deep)
-        return KobukiReading(bumpers, frozenset(cliffs), frozenset(dropped))
+        return KobukiReading(bumpers, frozenset(cliffs), frozenset(dropped), context.power)
 
 
 def pressed(contacts_xyz: np.ndarray) -> FrozenSet[int]:

@@ -5,6 +5,8 @@ from typing import Callable, Dict, List, Tuple, Union
 
 import numpy as np
 
+from planar import Pose2
+from sim_bridge.geometry.pose3 import to_pose2
 from sim_bridge.views.render_geometry import RenderGeometry
 from sim_bridge.views.section import CrossSection
 from sim_bridge.world import Body
@@ -22,6 +24,7 @@ class SceneView:
     def __init__(self, pose_of: Callable[[str], np.ndarray]):
         self._pose_of = pose_of
         self._bodies: Dict[str, Body] = {}
+        self._docks: List[str] = []
         self._sections: Dict[Tuple[str, float], CrossSection] = {}
         # At most one; computed when a camera first needs it, since loading meshes may take seconds.
         self._render_geometry: List[RenderGeometry] = []
@@ -34,6 +37,8 @@ class SceneView:
     def add(self, body: Body) -> None:
         """Add a body."""
         self._bodies[body.name] = body
+        if body.is_dock:
+            self._docks.append(body.name)
         for geometry in self._render_geometry:
             geometry.add(body)
         for (viewer, _), section in self._sections.items():
@@ -42,7 +47,9 @@ class SceneView:
 
     def remove(self, name: str) -> None:
         """Remove a body."""
-        self._bodies.pop(name, None)
+        body = self._bodies.pop(name, None)
+        if body is not None and body.is_dock:
+            self._docks.remove(name)
         for view in self._views():
             view.remove(name)
 
@@ -89,6 +96,9 @@ class SceneView:
         """Return the largest laser_retro of a body's collisions; 0 for the name of no body."""
         parts = self._bodies[link].collisions if link in self._bodies else ()
         return max((part.laser_retro for part in parts), default=0.0)
+    def docks(self) -> List[Pose2]:
+        """Return the poses of all docks in the world."""
+        return [to_pose2(self._pose_of(name)) for name in self._docks]
 
     def triangles(self, viewer: str = "") -> Tuple[np.ndarray, np.ndarray]:
         """Return the surfaces that a camera can see.

@@ -4,13 +4,13 @@ import rospy
 from kobuki_msgs.msg import BumperEvent, CliffEvent, SensorState, WheelDropEvent
 from sensor_msgs.msg import PointCloud2
 
+from sim_bridge.power.system import PowerReading
 from sim_bridge.ros.kobuki.bumper_cloud import FRAME, BumperCloud
 from sim_bridge.ros.publishers import RobotPublishers
-from sim_bridge.sensors.kobuki import CENTRE, LEFT, RIGHT, KobukiProfile, KobukiReading
+from sim_bridge.sensors.kobuki import SECTOR_BITS, KobukiProfile, KobukiReading
 
 NAMESPACE = "mobile_base"
 # Bits of SensorState; wheels have other numbers than sectors.
-SECTOR_BITS = {RIGHT: 1, CENTRE: 2, LEFT: 4}
 WHEEL_BITS = {WheelDropEvent.RIGHT: 1, WheelDropEvent.LEFT: 2}
 
 
@@ -55,6 +55,14 @@ class KobukiTopics:
             state.bumper = sum(SECTOR_BITS[sector] for sector in reading.bumpers)
             state.cliff = sum(SECTOR_BITS[sector] for sector in reading.cliffs)
             state.wheel_drop = sum(WHEEL_BITS[wheel] for wheel in reading.dropped)
+            if reading.power is not None:
+                _fill_power(state, reading.power)
             self._state.publish(state)
         if self._points.is_due(reading) and self._cloud.get_num_connections():
             self._cloud.publish(self._points.message(reading, stamp, self._frame))
+
+
+def _fill_power(state: SensorState, power: PowerReading) -> None:
+    """Set battery [0.1 V], charger and motor currents [10 mA] of a state."""
+    state.battery, state.charger = round(power.voltage * 10.0), int(power.charger)
+    state.current = [min(round(current * 100.0), 255) for current in power.motor_currents]

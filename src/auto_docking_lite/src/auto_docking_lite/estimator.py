@@ -1,0 +1,177 @@
+"""Estimates the pose of a dock from its infrared signals: a particle filter over the pose of the dock.
+
+The robot's odometry moves the receivers; each signal states in which fan, at which range and within which
+receiver's opening angle the dock is (Probabilistic Robotics, chapter 4.3).
+"""
+
+import math
+from typing import List, NamedTuple, Optional, Sequence, Tuple
+
+import numpy as np
+
+from auto_docking_lite.config import DockingSettings
+from auto_docking_lite.kernels import log_likelihoods
+from planar import Pose2, wrap
+from planar.geometry.dock_field import CENTRE, FAR_CENTRE, LEFT, NEAR, RIGHT
+
+Signals = Tuple[int, int, int]
+PARTICLES, FIRST_PARTICLES = 400, 2000
+# Motion of the robot between two signals that are used, unless they differ [m, rad].
+MIN_DISTANCE, MIN_ANGLE = 0.01, 0.035
+# Growth of the uncertainty: per metre [m, rad] and per radian [m, rad].
+DRIFT_BY_DISTANCE, DRIFT_BY_ANGLE = (0.02, 0.02), (0.005, 0.02)
+# Mean log-likelihood of signals below which the estimate contradicts them, and how many in a row it may.
+CONTRADICTION, MAX_CONTRADICTIONS = -2.0, 8
+YAW_DEVIATION = 0.3
+
+
+class DockEstimate(NamedTuple):
+    """Pose of a dock with its uncertainty.
+
+    Attributes:
+        dock_in_odom: Mean.
+        position_deviation: Standard deviation of the position [m].
+        yaw_deviation: Standard deviation of the heading [rad].
+    """
+
+    dock_in_odom: Pose2
+    position_deviation: float
+    yaw_deviation: float
+
+
+class DockEstimator:
+    """A particle filter over the pose of a dock in the odometry frame.
+
+    Args:
+        settings: Expected geometry of the field.
+        rng: Random generator.
+
+    Attributes:
+        has_signal: Whether a signal has been received since the start or since the last contradiction.
+        contradictions: Number of signals in a row that contradict the estimate.
+    """
+
+    def __init__(self, settings: DockingSettings, rng: np.random.Generator):
+        self._settings, self._rng = settings, rng
+        self._field = np.array(
+            (
+                settings.dock_centre_half_angle,
+                settings.dock_side_half_angle,
+                settings.dock_near_range,
+                settings.dock_far_range,
+                settings.dock_receiver_bearing,
+                settings.dock_receiver_half_angle,
+                settings.dock_receiver_radius,
+            )
+        )
+        self._particles: Optional[np.ndarray] = None
+        self._last: Optional[Tuple[Pose2, Signals]] = None
+        self.has_signal, self.contradictions = False, 0
+
+    def expect(self, dock_in_odom: Pose2) -> None:
+        """Start from a known dock, which may have been moved.
+
+        Args:
+            dock_in_odom: Its pose.
+        """
+        spread = self._settings.prior_deviation
+        noise = self._rng.normal(size=(PARTICLES, 3)) * (spread, spread, YAW_DEVIATION / 2.0)
+        self._particles = dock_in_odom.as_array() + noise
+        self.has_signal = False
+
+    def estimate(self) -> Optional[DockEstimate]:
+        """Return the estimate; None without a known dock and before the first signal."""
+        if self._particles is None:
+            return None
+        x, y, yaw = self._particles.T
+        sine, cosine = float(np.sin(yaw).mean()), float(np.cos(yaw).mean())
+        mean = Pose2(float(x.mean()), float(y.mean()), math.atan2(sine, cosine))
+        length = min(max(math.hypot(sine, cosine), 1e-9), 1.0)
+        return DockEstimate(mean, float(math.hypot(x.std(), y.std())), math.sqrt(-2.0 * math.log(length)))
+
+    def update(self, received: Sequence[Tuple[Pose2, Signals]]) -> None:
+        """Update the estimate.
+
+        Args:
+            received: Poses of the robot in odom with the signals received there, in the order of time.
+        """
+        used = [each for each in received if self._is_news(*each)]
+        if not used:
+            return
+        bases = np.array([base.as_array() for base, _ in used])
+        signals = np.array([signal for _, signal in used], dtype=np.int64)
+        if signals.any() and self._particles is None:
+            self._particles = self._around(*used[int(signals.any(axis=1).argmax())])
+        self.has_signal = self.has_signal or bool(signals.any())
+        if self._particles is None:
+            return
+        logs = log_likelihoods(self._particles, bases, signals, self._field)
+        self._check(logs.max(), int((signals != 0).sum()), used)
+        if self._particles is not None and len(logs) == len(self._particles):
+            self._resample(logs)
+
+    def _is_news(self, base: Pose2, signals: Signals) -> bool:
+        """Return whether a signal adds information; if so, let the particles drift by the motion."""
+        last = self._last
+        if last is not None:
+            distance, angle = last[0].distance_to(base), abs(wrap(base.yaw - last[0].yaw))
+            if last[1] == signals and distance < MIN_DISTANCE and angle < MIN_ANGLE:
+                return False
+            self._drift(distance, angle)
+        self._last = (base, signals)
+        return True
+
+    def _drift(self, distance: float, angle: float) -> None:
+        if self._particles is None:
+            return
+        by_distance, by_angle = DRIFT_BY_DISTANCE, DRIFT_BY_ANGLE
+        position, yaw = (by_distance[i] * distance + by_angle[i] * angle for i in (0, 1))
+        scale = np.array((position, position, yaw))
+        self._particles = self._particles + self._rng.normal(size=self._particles.shape) * scale
+
+    def _check(self, best: float, count: int, used: List[Tuple[Pose2, Signals]]) -> None:
+        """Count contradictions, and start afresh from the signals after too many in a row."""
+        if count == 0:
+            return
+        self.contradictions = self.contradictions + 1 if best < CONTRADICTION * count else 0
+        if self.contradictions > MAX_CONTRADICTIONS:
+            self.contradictions = 0
+            seen = [each for each in used if any(each[1])]
+            self._particles = self._around(*seen[-1])
+
+    def _resample(self, logs: np.ndarray) -> None:
+        """Low-variance resampling (Probabilistic Robotics, table 4.4), with kernel noise, when it is due."""
+        assert self._particles is not None
+        weights = np.exp(logs - logs.max())
+        weights /= weights.sum()
+        positions = (np.arange(PARTICLES) + self._rng.random()) / PARTICLES
+        chosen = np.minimum(np.searchsorted(np.cumsum(weights), positions), len(weights) - 1)
+        particles = self._particles[chosen]
+        # Noise of the kernel: a share of the spread, so that copies differ (regularized particle filter).
+        spread = 0.1 * particles.std(axis=0) + (0.002, 0.002, 0.004)
+        self._particles = particles + self._rng.normal(size=particles.shape) * spread
+
+    def _around(self, base: Pose2, signals: Signals) -> np.ndarray:
+        """Return poses (FIRST_PARTICLES, 3) of docks that explain the strongest signal received at a pose."""
+        settings, rng, count = self._settings, self._rng, FIRST_PARTICLES
+        number = max(range(3), key=lambda each: (bool(signals[each]), bool(signals[each] & CENTRE)))
+        receiver, byte = list(settings.receivers(base))[number], signals[number]
+        near = bool(byte & NEAR)
+        low, high = (
+            (0.0, settings.dock_near_range) if near else (settings.dock_near_range, settings.dock_far_range)
+        )
+        distance = rng.uniform(low, high, count)
+        edge, limit = settings.dock_centre_half_angle, settings.dock_side_half_angle
+        angle = rng.uniform(-edge, edge, count)
+        if not byte & CENTRE:
+            sides = [side for side, fan in ((1.0, LEFT), (-1.0, RIGHT)) if byte & fan]
+            angle = rng.choice(sides, count) * rng.uniform(edge, limit, count)
+        opening = settings.dock_receiver_half_angle
+        to_dock = receiver.yaw + rng.uniform(-opening, opening, count)
+        x, y = receiver.x + distance * np.cos(to_dock), receiver.y + distance * np.sin(to_dock)
+        return np.column_stack((x, y, to_dock + math.pi - angle))
+
+
+def warm_up() -> None:
+    """Compile the kernel, or load it from the cache, before the first signal needs it."""
+    DockEstimator(DockingSettings(), np.random.default_rng(0)).update([(Pose2(), (0, FAR_CENTRE, 0))])
