@@ -42,7 +42,23 @@ class Repetitions:
                 is_changed = True
                 self._add(series, now)
                 series = self._advanced(series, series.next_start)
-        return is_changed
+        return self._skip_superseded(now) or is_changed
+
+    def _skip_superseded(self, now: float) -> bool:
+        """Skip repetitions that were not started before the next one is due, unless their deadline is later."""
+        waiting = [task for task in self._book.tasks.values() if task.series and task.started_at is None]
+        latest = {task.series: task for task in waiting if task.request.release <= now}
+        old = [
+            task
+            for task in waiting
+            if task.request.release <= now
+            and task is not latest[task.series]
+            and (task.request.deadline or now) <= now
+        ]
+        for task in old:
+            self._book.put(task.ended(TaskStatus.SKIPPED, now, "its next repetition is due"))
+            self._book.log(now, "skipped", "the next repetition is due", task.id)
+        return bool(old)
 
     def next_due(self) -> Optional[float]:
         """Return the Unix time of the next repetition that is not in the queue yet [s]; None for none."""

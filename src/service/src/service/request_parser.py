@@ -89,7 +89,7 @@ class RequestParser:
     def _description(self, document: Mapping[str, Any]) -> Any:
         category, values = document.get("category"), document.get("description", {})
         if not isinstance(category, str) or category not in DESCRIPTIONS:
-            name = "" if category is None else f'"{str(category)[:MAX_TEXT]}" is not known'
+            name = "is missing" if category is None else f'"{str(category)[:MAX_TEXT]}" is not known'
             self.problems.append(f"category: {name}{hint_or_choices(category, DESCRIPTIONS)}")
             return None
         if not isinstance(values, Mapping):

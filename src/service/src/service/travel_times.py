@@ -1,6 +1,6 @@
 """Times of drives from the lengths of paths on the map, corrected by how long drives have taken."""
 
-from typing import Dict, Optional, Tuple
+from typing import Dict, Tuple
 
 import numpy as np
 
@@ -14,6 +14,8 @@ SPEED, OVERHEAD_SECONDS = 0.3, 4.0
 CLEARANCE, DETOUR = 0.22, 1.5
 # Cells are merged to this size [m].
 CELL = 0.1
+# Number of drives whose times are kept.
+MAX_CACHED = 10_000
 
 
 class GridTravelTimes:
@@ -33,15 +35,22 @@ class GridTravelTimes:
         self._graph = grid_graph(self._is_open, grid.resolution * step)
         self._open_cells = np.argwhere(self._is_open)
         self._to_goal: Dict[int, np.ndarray] = {}
-        self._nodes: Dict[Tuple[float, float], int] = {}
+        self._seconds: Dict[Tuple[float, float, float, float], float] = {}
 
     def seconds(self, start: Pose2, end: Pose2) -> float:
         """Return the time to drive from one pose to another [s]."""
-        metres = self._metres(start, end)
-        return 0.0 if metres == 0.0 and start.x == end.x else OVERHEAD_SECONDS + metres / self._speed
+        key = (start.x, start.y, end.x, end.y)
+        seconds = self._seconds.get(key)
+        if seconds is None:
+            metres = self._metres(start, end)
+            seconds = 0.0 if key[:2] == key[2:] else OVERHEAD_SECONDS + metres / self._speed
+            if len(self._seconds) >= MAX_CACHED:
+                self._seconds.clear()
+            self._seconds[key] = seconds
+        return seconds
 
     def _metres(self, start: Pose2, end: Pose2) -> float:
-        goal = self._node(end, is_kept=True)
+        goal = self._node(end)
         if goal not in self._to_goal:
             from scipy.sparse.csgraph import dijkstra  # late: few users need it
 
@@ -49,17 +58,11 @@ class GridTravelTimes:
         metres = float(self._to_goal[goal][self._node(start)])
         return metres if np.isfinite(metres) else DETOUR * start.distance_to(end)
 
-    def _node(self, pose: Pose2, is_kept: bool = False) -> int:
+    def _node(self, pose: Pose2) -> int:
         """Return the open cell nearest to a pose."""
-        key = (round(pose.x, 2), round(pose.y, 2))
-        node: Optional[int] = self._nodes.get(key)
-        if node is None:
-            row, col = self._grid.cells_of([[pose.x, pose.y]])[0] // self._step
-            rows, cols = self._is_open.shape
-            if not (0 <= row < rows and 0 <= col < cols and self._is_open[row, col]):
-                squares = ((self._open_cells - (row, col)) ** 2).sum(axis=1)
-                row, col = self._open_cells[int(squares.argmin())]
-            node = int(row) * cols + int(col)
-            if is_kept or len(self._nodes) < 10_000:
-                self._nodes[key] = node
-        return node
+        row, col = self._grid.cells_of([[pose.x, pose.y]])[0] // self._step
+        rows, cols = self._is_open.shape
+        if not (0 <= row < rows and 0 <= col < cols and self._is_open[row, col]):
+            squares = ((self._open_cells - (row, col)) ** 2).sum(axis=1)
+            row, col = self._open_cells[int(squares.argmin())]
+        return int(row) * cols + int(col)

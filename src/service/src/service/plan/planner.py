@@ -7,9 +7,9 @@ from service.plan.job import PlannedJob, PlanStart, QueuePlan
 from service.plan.rollout import Surroundings, roll_out
 
 # Number of jobs for which every order is tried, and whose order is improved; further ones follow by deadline.
-MAX_EXACT, WINDOW = 4, 10
+MAX_EXACT, WINDOW = 4, 8
 # Orders that are tried at most while one is improved.
-MAX_TRIALS = 240
+MAX_TRIALS = 120
 
 
 class Planner(Protocol):

@@ -51,7 +51,8 @@ class Rollout:
 
     def __init__(self, surroundings: Surroundings, start: PlanStart, fills_up: bool):
         self._around, self._fills_up = surroundings, fills_up
-        self._now, self._pose, self._charge = start.now, start.pose, start.charge
+        self._start = self._now = start.now
+        self._pose, self._charge = start.pose, start.charge
         self._is_docked, self._current = start.is_docked, start.current
         energy = surroundings.energy
         self._drive = 1.0 / (energy.drive_hours * HOUR)
@@ -74,12 +75,11 @@ class Rollout:
         seconds, used, pose = self._work(job)
         self._now, self._pose, self._is_docked = start + seconds, pose, job.is_docking
         self._spend(used)
-        deadline = job.deadline
-        is_late = deadline is not None and self._now > deadline
-        is_tight = deadline is not None and self._now + SLACK_SHARE * seconds + SLACK_SECONDS > deadline
-        # Past its deadline a job is missed in any order; it counts only by its delay.
-        is_lost = deadline is not None and job.release + seconds > deadline
-        self._missed += job.weight * (1.0 if is_late and not is_lost else 0.5 if is_tight and not is_lost else 0.0)
+        is_late = job.deadline is not None and self._now > job.deadline
+        if job.deadline is not None and job.deadline > self._start:  # else it is missed in any order
+            slack = SLACK_SHARE * seconds + SLACK_SECONDS
+            is_tight = self._now + slack > job.deadline
+            self._missed += job.weight * (1.0 if is_late else 0.5 if is_tight else 0.0)
         self._delay += job.weight * (self._now - job.release) / (10.0 if is_late else 1.0)
         self.entries.append(PlanEntry(job.id, start, self._now, is_late, self._charge))
 
