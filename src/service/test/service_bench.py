@@ -5,9 +5,9 @@ import numpy as np
 from planar import Pose2
 from planar.maps.places import NamedPlace
 from service.day.kinematic_robot import KinematicRobot, KinematicSettings
-from service.plan.rollout import Surroundings
-from service.request_parser import Knowledge
+from service.plan.rollout import PlanningModel
 from service.request_service import RequestService, Site
+from service.requests.parser import Knowledge
 from service.task_book import Snapshot
 
 # 2026-11-30 08:00 UTC.
@@ -26,11 +26,11 @@ class StraightLines:
 
 
 def site(zone=None, has_dock=True, **surroundings):
-    around = Surroundings(StraightLines(), dock=DOCK if has_dock else None, **surroundings)
+    around = PlanningModel(StraightLines(), dock=DOCK if has_dock else None, **surroundings)
     return Site(PLACES, around, Knowledge(tuple(PLACES), has_dock, zone))
 
 
-def sure_robot(**options):
+def ideal_robot(**options):
     """A robot whose drives take as long as planned and never fail."""
     settings = KinematicSettings(spread=0.0, failure=0.0, docking_failure=0.0)
     return KinematicRobot(StraightLines(), DOCK, np.random.default_rng(0), settings, **options)
@@ -41,7 +41,7 @@ class Bench:
 
     def __init__(self, snapshot=Snapshot(), robot=None, store=None, where=None, **options):
         self.service = RequestService(where or site(), snapshot=snapshot, **options)
-        self.robot = robot or sure_robot()
+        self.robot = robot or ideal_robot()
         self.now, self.orders, self.ended, self.log = NOW, [], {}, []
         self._store = store
 

@@ -11,11 +11,11 @@ import pytest
 from service_bench import NOW, Bench
 
 from service.errors import JournalError
+from service.execution.robot import RobotInputs, StopRobot
 from service.host import ServiceHost, submit
 from service.journal import VERSION, Journal, JournalLimits
-from service.robot import RobotInputs, StopRobot
 from service.task import TaskStatus
-from service.task_book import Changes, LogEntry
+from service.task_book import Changes, JournalEntry
 
 
 def journaled(path, **options):
@@ -62,7 +62,11 @@ def test_a_log_cut_off_anywhere_restores_a_state_that_was_committed(tmp_path):
     store = bench._store
     bench._store = lambda changes, number: (
         store(changes, number),
-        states.append((bench.service.book.tasks[task.id].step, True) if task.id in bench.service.book.tasks else (4, True)),
+        states.append(
+            (bench.service.book.tasks[task.id].step, True)
+            if task.id in bench.service.book.tasks
+            else (4, True)
+        ),
     )
     bench.finish(task)
     database, log = tmp_path / "journal.db", tmp_path / "journal.db-wal"
@@ -192,17 +196,17 @@ def test_a_read_only_journal_is_refused(tmp_path):
     Journal(tmp_path / "journal.db").close()
     (tmp_path / "journal.db").chmod(0o444)
     with pytest.raises(JournalError, match="make the file and its folder writable"):
-        Journal(tmp_path / "journal.db").store(Changes(log=[LogEntry(0.0, "", "", "")]), 1)
+        Journal(tmp_path / "journal.db").store(Changes(log=[JournalEntry(0.0, "", "", "")]), 1)
 
 
 KILLED = """
 import json, os, sys
 from pathlib import Path
 from service.journal import Journal
-from service.task_book import Changes, LogEntry
+from service.task_book import Changes, JournalEntry
 journal = Journal(Path(sys.argv[1]))
 for number in range(100000):
-    journal.store(Changes(log=[LogEntry(float(number), "test", "", "")]), number)
+    journal.store(Changes(log=[JournalEntry(float(number), "test", "", "")]), number)
     print(number, flush=True)
 """
 

@@ -3,14 +3,14 @@
 from datetime import timezone
 
 import pytest
-from service_bench import NOW, PLACES, Bench, sure_robot, site
+from service_bench import NOW, PLACES, Bench, ideal_robot, site
 
 from pick_objects import DriveToPlace
 from planar import Pose2
 from planar.driving import GoalFailed, RobotDisplaced
 from service.config import EnergySettings, ServiceSettings
 from service.errors import QueueFullError, RequestError, TaskEndedError, UnknownTaskError
-from service.robot import DockRobot, UndockRobot
+from service.execution.robot import DockRobot, UndockRobot
 from service.task import TaskStatus
 from service.task_book import Snapshot
 
@@ -38,7 +38,12 @@ def test_a_delivery_picks_up_and_sets_down():
 
 def test_every_kind_of_request_is_carried_out():
     bench = Bench()
-    texts = ("deliver cup from kitchen to desk", "fetch cup to hall", "go kitchen", "patrol hall desk 2 times")
+    texts = (
+        "deliver cup from kitchen to desk",
+        "fetch cup to hall",
+        "go kitchen",
+        "patrol hall desk 2 times",
+    )
     tasks = [bench.send(text) for text in (*texts, "wait 10 at hall", "wait 1", "dock")]
     assert {task.status for task in bench.finish(*tasks)} == {TaskStatus.COMPLETED}
     assert bench.service.book.objects["cup"].place == "hall"
@@ -55,7 +60,7 @@ def test_a_deadline_that_cannot_be_kept_is_stated_at_once():
 
 
 def test_deadlines_decide_on_the_order():
-    bench = Bench(robot=sure_robot(pose=PLACES["kitchen"].pose))
+    bench = Bench(robot=ideal_robot(pose=PLACES["kitchen"].pose))
     relaxed, urgent = bench.send("go desk"), bench.send("go hall", by="+25s")
     bench.finish(relaxed, urgent)
     assert goals(bench) == ["hall", "desk"]
@@ -231,7 +236,7 @@ def test_repetitions_that_were_due_while_the_robot_was_off_are_done_once():
 
 def test_a_low_battery_is_charged_before_the_next_task_and_never_empty():
     energy = EnergySettings(drive_hours=0.1, stand_hours=0.2, charge_hours=0.05)
-    robot = sure_robot()
+    robot = ideal_robot()
     robot._settings = type(robot._settings)(energy, 0.0, 0.0, 0.0)
     bench = Bench(robot=robot, where=site(energy=energy))
     tasks = [bench.send("patrol desk hall kitchen 2 times") for _ in range(8)]
@@ -242,7 +247,7 @@ def test_a_low_battery_is_charged_before_the_next_task_and_never_empty():
 
 
 def test_an_idle_robot_waits_in_its_dock():
-    bench = Bench(robot=sure_robot(pose=Pose2(3.0, 3.0)))
+    bench = Bench(robot=ideal_robot(pose=Pose2(3.0, 3.0)))
     bench.run(290.0)
     assert not bench.orders
     bench.run(60.0)
@@ -261,7 +266,7 @@ def test_a_clock_that_jumps_back_starts_nothing_twice():
     assert any(entry.kind == "clock" for entry in bench.log)
 
 
-def test_state_says_what_the_robot_does():
+def test_state_reports_what_the_robot_does():
     bench = Bench()
     task = bench.send("deliver cup from kitchen to desk")
     bench.run_until(lambda: bench.service.find(task.id).is_carrying)

@@ -13,7 +13,7 @@ from service_bench import NOW, Bench  # noqa: E402
 
 from planar import SettingsError  # noqa: E402
 from service.host import ServiceHost  # noqa: E402
-from service.http.client import RefusedError, ServiceClient  # noqa: E402
+from service.http.client import RequestRefusedError, ServiceClient  # noqa: E402
 from service.http.server import HttpServer  # noqa: E402
 
 
@@ -88,7 +88,7 @@ def test_requests_are_cancelled(folder):
     assert client.call("DELETE", f"/tasks/{task['booking']['id']}") == {"success": True}
     assert client.call("GET", "/tasks") == []
     for path, status in ((f"/tasks/{task['booking']['id']}", 409), ("/tasks/77", 404)):
-        with pytest.raises(RefusedError) as error:
+        with pytest.raises(RequestRefusedError) as error:
             client.call("DELETE", path)
         assert error.value.status == status
 
@@ -146,6 +146,6 @@ def test_only_the_user_may_read_the_token(folder):
     assert (folder / "service.json").stat().st_mode & 0o777 == 0o600
 
 
-def test_a_client_without_a_service_says_so(tmp_path):
+def test_a_client_without_a_service_is_an_error(tmp_path):
     with pytest.raises(SettingsError, match="start ./scripts/service.sh"):
         ServiceClient(tmp_path)

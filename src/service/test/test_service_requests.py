@@ -6,10 +6,19 @@ from datetime import timezone
 import pytest
 from service_bench import NOW, PLACES
 
-from service.calendar_times import next_repetition, parse_duration, parse_time
 from service.errors import RequestError
-from service.request import Deliver, Fetch, Go, GoToDock, Patrol, Wait, request_from_json, request_to_json
-from service.request_parser import Knowledge, parse_request
+from service.requests.calendar_times import next_repetition, parse_duration, parse_time
+from service.requests.parser import Knowledge, parse_request
+from service.requests.request import (
+    Deliver,
+    Fetch,
+    Go,
+    GoToDock,
+    Patrol,
+    Wait,
+    request_from_json,
+    request_to_json,
+)
 
 KNOWN = Knowledge(tuple(PLACES), True, timezone.utc)
 MINUTE = 60_000

@@ -1,1 +1,1 @@
-"""Requests to a home-service robot: queue, schedule, execution, journal. No ROS outside of ``service.ros``."""
+"""Requests to a robot: queue, schedule, execution, journal. No ROS outside of ``service.ros``."""

@@ -1,7 +1,11 @@
 """Settings of the service."""
 
+import math
 from dataclasses import dataclass
+from typing import Optional
 
+from planar import Pose2, SettingsError
+from planar.config.config_file import Section
 from planar.config.parameters import POSITIVE, ZERO_OR_MORE, Interval, at_least, check_parameters, parameter
 
 SHARE = Interval(0.0, 1.0)
@@ -40,3 +44,59 @@ class ServiceSettings:
 
     def __post_init__(self):
         check_parameters(self)
+
+
+@dataclass(frozen=True)
+class NodeSettings:
+    """What the node works with."""
+
+    zones_file: str = parameter(
+        "", "path of the YAML file with named places", required="the path of a YAML file of zones"
+    )
+    mission_file: str = parameter("", "YAML file of a mission whose deliveries are requested once; or empty")
+    state_folder: str = parameter(
+        "", "folder of the journal and of service.json", required="the path of a folder"
+    )
+    dock: str = parameter("", "pose of the dock in the map: x y yaw [m, rad]; empty: no dock")
+    staging_distance: float = parameter(
+        0.8, "distance before the dock to which drives to it lead", "m", POSITIVE
+    )
+    speed: float = parameter(0.3, "mean speed by which drives are planned", "m/s", POSITIVE)
+    http_address: str = parameter("127.0.0.1", "address of the HTTP interface")
+    http_port: int = parameter(0, "port of the HTTP interface; 0: a free one", bounds=Interval(0, 65535))
+    wait_for: str = parameter("", "nodes that must be ready before the service starts, separated by spaces")
+    frame_id: str = parameter("map", "frame of the places")
+    server_timeout: float = parameter(
+        60.0, "wall-clock time to wait for move_base and the map", "s", POSITIVE
+    )
+
+    def __post_init__(self):
+        check_parameters(self)
+
+
+def dock_pose(text: str) -> Optional[Pose2]:
+    """Return the pose of a dock; None for an empty text.
+
+    Raises:
+        SettingsError: If it is not three numbers.
+    """
+    if not text.strip():
+        return None
+    try:
+        x, y, yaw = (float(word) for word in text.replace(",", " ").split())
+    except ValueError:
+        raise SettingsError(f"dock: '{text}' is no pose; expected x y yaw [m, rad]") from None
+    if not all(map(math.isfinite, (x, y, yaw))):
+        raise SettingsError(f"dock: '{text}' is no pose; expected finite numbers x y yaw [m, rad]")
+    return Pose2(x, y, yaw)
+
+
+CONFIG_FILES = {
+    "service.yaml": Section(
+        "",
+        ServiceSettings,
+        EnergySettings,
+        NodeSettings,
+        about="Every parameter of service with its default. Seconds are simulated seconds.",
+    )
+}

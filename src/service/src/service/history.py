@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from statistics import median
 from typing import Dict, List, Sequence
 
-from service.calendar_times import clock_text
+from service.requests.calendar_times import clock_text
 from service.task import ServiceTask, TaskStatus
 
 

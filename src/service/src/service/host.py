@@ -9,11 +9,11 @@ from typing import Any, Callable, Dict, List, Optional, Tuple
 
 from planar import PlanarError
 from service.errors import JournalError
+from service.execution.robot import RobotEvent, RobotInputs, RobotOrder, StopRobot
 from service.journal import Journal, JournalLimits
 from service.request_service import RequestService
-from service.robot import RobotEvent, RobotInputs, RobotOrder, StopRobot
 from service.task import Series, ServiceTask, task_to_json
-from service.task_book import LogEntry
+from service.task_book import JournalEntry
 
 # Wall-clock time between two attempts to write a journal that could not be written [s].
 RETRY_SECONDS = 2.0
@@ -22,7 +22,7 @@ MAX_CALLS = 500
 
 # Acts on the service at a Unix time; what it returns is called after planning, for the answer.
 Act = Callable[["ServiceHost", float], Callable[[], Any]]
-Listener = Callable[[int, LogEntry], None]
+Listener = Callable[[int, JournalEntry], None]
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ class ServiceHost:
         limits: JournalLimits = JournalLimits(),
     ):
         self._path, self._make, self._log, self._limits = path, make, log, limits
-        self._calls: "queue.SimpleQueue[Call]" = queue.SimpleQueue()
+        self._calls: queue.SimpleQueue[Call] = queue.SimpleQueue()
         self._listeners: Dict[int, Listener] = {}
         self.problem, self._retry_at = "", 0.0
         self.journal: Optional[Journal] = None

@@ -14,9 +14,9 @@ from typing import IO, Any, Dict, Iterator, List, Optional, Tuple
 
 from planar import Pose2
 from service.errors import JournalError
-from service.request import request_from_json, request_to_json
+from service.requests.request import request_from_json, request_to_json
 from service.task import OPEN, ObjectState, Series, ServiceTask, TaskStatus
-from service.task_book import Changes, LogEntry, RobotRecord, Snapshot
+from service.task_book import Changes, JournalEntry, RobotRecord, Snapshot
 
 # Version of the tables, in SQLite's user_version; the application id marks the file as a journal.
 VERSION, APPLICATION = 1, 0x48535256
@@ -66,7 +66,9 @@ class Journal:
         self._lock: Optional[IO[str]] = None
         try:
             if is_reader:
-                self._connection = sqlite3.connect(f"{path.resolve().as_uri()}?mode=ro", uri=True, timeout=5.0)
+                self._connection = sqlite3.connect(
+                    f"{path.resolve().as_uri()}?mode=ro", uri=True, timeout=5.0
+                )
             else:
                 path.parent.mkdir(parents=True, exist_ok=True)
                 self._lock = _locked(path)
@@ -113,7 +115,9 @@ class Journal:
         """
         try:
             marks = ",".join("?" * len(OPEN_STATES))
-            rows = self._rows(f"SELECT id, body FROM task WHERE status IN ({marks}) ORDER BY number", *OPEN_STATES)
+            rows = self._rows(
+                f"SELECT id, body FROM task WHERE status IN ({marks}) ORDER BY number", *OPEN_STATES
+            )
             tasks = tuple(_task(*row) for row in rows)
             objects = {name: _object(body) for name, body in self._rows("SELECT name, body FROM object")}
             series = tuple(
@@ -137,10 +141,10 @@ class Journal:
         query = "SELECT id, body FROM task WHERE finished > ? ORDER BY finished DESC, number DESC LIMIT ?"
         return [_task(*row) for row in self._rows(query, since, limit)]
 
-    def log_after(self, number: int, limit: int = 1000) -> List[Tuple[int, LogEntry]]:
+    def log_after(self, number: int, limit: int = 1000) -> List[Tuple[int, JournalEntry]]:
         """Return entries of the log after a number, with their numbers."""
         query = "SELECT number, stamp, kind, task, text FROM log WHERE number > ? ORDER BY number LIMIT ?"
-        return [(row[0], LogEntry(*row[1:])) for row in self._rows(query, number, limit)]
+        return [(row[0], JournalEntry(*row[1:])) for row in self._rows(query, number, limit)]
 
     @property
     def latest_number(self) -> int:
@@ -151,7 +155,9 @@ class Journal:
         version = next(self._rows("PRAGMA user_version"))[0]
         is_new = version == 0 and next(self._rows("SELECT count(*) FROM sqlite_master"))[0] == 0
         if not is_new and next(self._rows("PRAGMA application_id"))[0] != APPLICATION:
-            raise JournalError(f"{self.path}: is no journal of this service; name another folder with --state")
+            raise JournalError(
+                f"{self.path}: is no journal of this service; name another folder with --state"
+            )
         if not is_new and version != VERSION:
             raise JournalError(
                 f"{self.path}: is a journal of version {version}, expected {VERSION}; "

@@ -7,18 +7,18 @@ from typing import Any, Dict, List, Mapping, Optional
 from planar import Pose2
 from planar.elapsed_time import ElapsedTime
 from planar.maps.places import NamedPlace
-from service.activities import Docking
-from service.admission import Accepted, Admission, FindEnded
-from service.calendar_times import clock_text
 from service.config import ServiceSettings
-from service.executor import TaskExecutor
+from service.execution.activities import Docking
+from service.execution.executor import TaskExecutor
+from service.execution.robot import RobotEvent, RobotInputs, RobotOrder
 from service.plan.job import CHARGE
 from service.plan.planner import Planner
-from service.plan.rollout import Surroundings
-from service.repetitions import Repetitions
-from service.request_parser import Knowledge
-from service.robot import RobotEvent, RobotInputs, RobotOrder
-from service.scheduler import QueueScheduler
+from service.plan.rollout import PlanningModel
+from service.plan.scheduler import QueueScheduler
+from service.requests.admission import Accepted, Admission, FindEnded
+from service.requests.calendar_times import clock_text
+from service.requests.parser import Knowledge
+from service.requests.repetitions import Repetitions
 from service.task import ServiceTask
 from service.task_book import Changes, RobotRecord, Snapshot, TaskBook
 
@@ -34,12 +34,12 @@ class Site:
 
     Attributes:
         places: Places by name.
-        surroundings: Travel times, battery and dock.
+        model: Travel times, battery and dock.
         known: What requests may refer to.
     """
 
     places: Mapping[str, NamedPlace]
-    surroundings: Surroundings
+    model: PlanningModel
     known: Knowledge = field(default_factory=lambda: Knowledge(()))
 
 
@@ -47,7 +47,7 @@ class RequestService:
     """Accepts requests, plans them, and carries them out; it continues from what a journal holds.
 
     After each call the caller stores ``take_changes()`` in the journal, then acts on orders and answers: what
-    the robot does and what people are told is in the journal before.
+    the robot does and what clients receive is in the journal before.
 
     Args:
         site: Places, travel times, battery.
@@ -73,7 +73,7 @@ class RequestService:
         self._site, self._settings = site, settings
         self.book = TaskBook(snapshot)
         self.executor = TaskExecutor(self.book, site.places, settings)
-        self.scheduler = QueueScheduler(self.book, site.places, site.surroundings, settings, planner)
+        self.scheduler = QueueScheduler(self.book, site.places, site.model, settings, planner)
         self._repetitions = Repetitions(self.book, site.known.zone)
         self._admission = Admission(
             self.book, site.places, site.known, self._repetitions, settings.max_open, find_ended
@@ -195,7 +195,7 @@ class RequestService:
         return self.executor.current, None if current is None else current.step, self.executor.activity
 
     def _follow_plan(self, now: float, elapsed: float) -> Optional[RobotOrder]:
-        """Start, interrupt or park as the plan says."""
+        """Start, interrupt or park as planned."""
         executor, first = self.executor, self.scheduler.plan.first
         if executor.activity is not None:
             self._idle_since = elapsed
@@ -217,7 +217,7 @@ class RequestService:
 
     def _park(self, now: float, elapsed: float) -> Optional[RobotOrder]:
         """Wait in the dock if nothing is due for a while."""
-        around, robot, first = self._site.surroundings, self._robot, self.scheduler.plan.first
+        around, robot, first = self._site.model, self._robot, self.scheduler.plan.first
         if around.dock is None or robot.is_docked or robot.charge is None:
             return None
         home = around.travel.seconds(robot.pose, around.dock) + around.docking_seconds
@@ -237,7 +237,11 @@ class RequestService:
     def _record_robot(self, now: float) -> None:
         """Note the robot's pose now and then, and while it works."""
         is_working = self.executor.activity is not None
-        if 0.0 <= now - self._recorded_at < (ROBOT_RECORD_SECONDS if is_working else 20 * ROBOT_RECORD_SECONDS):
+        if (
+            0.0
+            <= now - self._recorded_at
+            < (ROBOT_RECORD_SECONDS if is_working else 20 * ROBOT_RECORD_SECONDS)
+        ):
             return
         self._recorded_at = now
         self.book.put_robot(RobotRecord(now, self._robot.pose, self._robot.is_docked))

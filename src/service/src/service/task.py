@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 from typing import Any, Dict, Optional
 
 from planar import Pose2
-from service.request import Request, request_to_json, to_millis
-from service.steps import PickUp, SetDown
+from service.requests.request import TaskRequest, request_to_json, to_millis
+from service.requests.steps import PickUp, SetDown
 
 
 class TaskStatus(enum.Enum):
@@ -44,7 +44,7 @@ class ServiceTask:
     """
 
     id: str
-    request: Request
+    request: TaskRequest
     status: TaskStatus = TaskStatus.QUEUED
     step: int = 0
     reason: str = ""
@@ -91,7 +91,7 @@ class Series:
     """
 
     id: str
-    request: Request
+    request: TaskRequest
     next_start: float
 
 

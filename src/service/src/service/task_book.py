@@ -9,7 +9,7 @@ from service.task import ObjectState, Series, ServiceTask
 
 
 @dataclass(frozen=True)
-class LogEntry:
+class JournalEntry:
     """Something that happened.
 
     Attributes:
@@ -55,7 +55,7 @@ class Changes:
     tasks: Dict[str, ServiceTask] = field(default_factory=dict)
     objects: Dict[str, ObjectState] = field(default_factory=dict)
     series: Dict[str, Optional[Series]] = field(default_factory=dict)
-    log: List[LogEntry] = field(default_factory=list)
+    log: List[JournalEntry] = field(default_factory=list)
     robot: Optional[RobotRecord] = None
 
     def __bool__(self) -> bool:
@@ -160,7 +160,7 @@ class TaskBook:
 
     def log(self, stamp: float, kind: str, text: str, task: str = "") -> None:
         """Store what happened."""
-        self._changes.log.append(LogEntry(stamp, kind, task, text))
+        self._changes.log.append(JournalEntry(stamp, kind, task, text))
 
     @property
     def carrying_task(self) -> Optional[ServiceTask]:

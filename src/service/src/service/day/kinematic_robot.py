@@ -2,15 +2,14 @@
 
 import math
 from dataclasses import dataclass
-from typing import Optional, Tuple
+from typing import Optional
 
 import numpy as np
 
 from pick_objects import DriveToPlace, GoalFailed, GoalReached
 from planar import Pose2
 from service.config import EnergySettings
-from service.plan.rollout import HOUR, TravelTimes
-from service.robot import (
+from service.execution.robot import (
     DockingFailed,
     DockRobot,
     RobotDocked,
@@ -20,6 +19,7 @@ from service.robot import (
     RobotUndocked,
     UndockRobot,
 )
+from service.plan.rollout import HOUR, TravelTimes
 
 
 @dataclass(frozen=True)
@@ -139,7 +139,9 @@ class KinematicRobot:
             self.empty_at = now
         if is_driving and isinstance(self._event, GoalReached) and self._due > self._departed:
             share = min(1.0, max(0.0, (now - self._departed) / (self._due - self._departed)))
-            x, y = (a + share * (b - a) for a, b in zip(self._start.as_array()[:2], self._goal.as_array()[:2]))
+            x, y = (
+                a + share * (b - a) for a, b in zip(self._start.as_array()[:2], self._goal.as_array()[:2])
+            )
             moved = Pose2(float(x), float(y), self._goal.yaw)
             self.metres += self.pose.distance_to(moved)
             self.pose = moved

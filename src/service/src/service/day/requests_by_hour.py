@@ -67,7 +67,9 @@ class DayGenerator:
         shares = np.array(SHARES) / sum(SHARES)
         counts = self._rng.multinomial(self._settings.requests, shares)
         due = sorted(
-            midnight + 3600.0 * (hour + self._rng.random()) for hour, count in enumerate(counts) for _ in range(count)
+            midnight + 3600.0 * (hour + self._rng.random())
+            for hour, count in enumerate(counts)
+            for _ in range(count)
         )
         made = [self._request(stamp) for stamp in due]
         return sorted(made, key=lambda request: request.stamp)

@@ -17,7 +17,7 @@ def new_token() -> str:
     return secrets.token_urlsafe(24)
 
 
-class Guard:
+class AccessGuard:
     """ASGI middleware that rejects requests without the token.
 
     The token is in the header ``Authorization: Bearer TOKEN`` or the query ``token=TOKEN``. The Host header

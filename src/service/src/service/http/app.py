@@ -12,8 +12,8 @@ from planar import PlanarError
 from service import host as calls
 from service.errors import JournalError, QueueFullError, RequestError, TaskEndedError, UnknownTaskError
 from service.http.schema import REQUEST_BODY
-from service.request import to_millis
-from service.task_book import LogEntry
+from service.requests.request import to_millis
+from service.task_book import JournalEntry
 
 MAX_BODY = 65_536
 # Time until a call is answered [s], and between two signs of life of the stream of events.
@@ -37,6 +37,58 @@ class BodyError(PlanarError):
         self.status = status
 
 
+class ServiceRoutes:
+    """What the paths answer.
+
+    Args:
+        host: The service.
+    """
+
+    def __init__(self, host: calls.ServiceHost):
+        self._host, self._numbers = host, itertools.count()
+
+    async def get_state(self) -> Response:
+        """What the robot does, its charge, and where objects are."""
+        return await self._answer(calls.state())
+
+    async def get_tasks(self) -> Response:
+        """Open tasks in the order of the plan, and series."""
+        return await self._answer(calls.tasks())
+
+    async def post_task(self, request: Request) -> Response:
+        """Accept a request: 201 with its task once it is in the journal;``in_time``: as planned."""
+        return await self._answer(calls.submit(await json_of(request)), 201)
+
+    async def get_task(self, task_id: str) -> Response:
+        """A task that is open or has ended, or a series."""
+        return await self._answer(calls.task(task_id))
+
+    async def delete_task(self, task_id: str) -> Response:
+        """Cancel a task or a series; a carried object is set down where the robot stands."""
+        return await self._answer(calls.cancel(task_id))
+
+    async def get_history(self, limit: int = 100) -> Response:
+        """Tasks that have ended, the latest first."""
+        return await self._answer(calls.history(max(1, min(limit, 10_000))))
+
+    async def get_events(self, request: Request, after: Optional[int] = None) -> Response:
+        """Server-sent events; ``after`` or the header Last-Event-ID resumes behind an event."""
+        given = request.headers.get("last-event-id", "")
+        since = int(given) if given.isdigit() else after
+        stream = events(self._host, next(self._numbers), since)
+        return StreamingResponse(stream, media_type="text/event-stream")
+
+    async def _answer(self, act: calls.Act, status: int = 200) -> Response:
+        try:
+            answer = asyncio.wrap_future(self._host.call(act))
+            return JSONResponse(await asyncio.wait_for(answer, ANSWER_SECONDS), status)
+        except PlanarError as error:
+            return problem_response(error)
+        except asyncio.TimeoutError:
+            text = f"no answer within {ANSWER_SECONDS:g} s; ask for the task's id to see if it was accepted"
+            return JSONResponse({"problems": [text]}, 503)
+
+
 def make_app(host: calls.ServiceHost, version: str) -> FastAPI:
     """Return the application for a service.
 
@@ -45,60 +97,24 @@ def make_app(host: calls.ServiceHost, version: str) -> FastAPI:
         version: Version of the interface.
     """
     app = FastAPI(title="Home service", version=version, docs_url=None, redoc_url=None)
-    numbers = itertools.count()
-
-    async def ask(act: calls.Act) -> Any:
-        answer = asyncio.wrap_future(host.call(act))
-        return await asyncio.wait_for(answer, ANSWER_SECONDS)
-
-    @app.exception_handler(PlanarError)
-    async def on_error(_request: Request, error: PlanarError) -> Response:
-        return problem_response(error)
-
-    @app.exception_handler(asyncio.TimeoutError)
-    async def on_timeout(_request: Request, _error: Exception) -> Response:
-        text = f"no answer within {ANSWER_SECONDS:g} s; whether the request is accepted, its id shows"
-        return JSONResponse({"problems": [text]}, 503)
-
-    @app.get("/state")
-    async def get_state() -> Any:
-        """What the robot does, its charge, and where objects are."""
-        return JSONResponse(await ask(calls.state()))
-
-    @app.get("/tasks")
-    async def get_tasks() -> Any:
-        """Open tasks in the order of the plan, and series."""
-        return JSONResponse(await ask(calls.tasks()))
-
-    @app.post("/tasks", status_code=201, openapi_extra=REQUEST_BODY)
-    async def post_task(request: Request) -> Any:
-        """Accept a request: 201 with its task once it is in the journal; ``in_time`` is the plan's verdict."""
-        document = await json_of(request)
-        return JSONResponse(await ask(calls.submit(document)), 201)
-
-    @app.get("/tasks/{task_id}")
-    async def get_task(task_id: str) -> Any:
-        """A task that is open or has ended, or a series."""
-        return JSONResponse(await ask(calls.task(task_id)))
-
-    @app.delete("/tasks/{task_id}")
-    async def delete_task(task_id: str) -> Any:
-        """Cancel a task or a series; a carried object is set down where the robot stands."""
-        return JSONResponse(await ask(calls.cancel(task_id)))
-
-    @app.get("/history")
-    async def get_history(limit: int = 100) -> Any:
-        """Tasks that have ended, the latest first."""
-        return JSONResponse(await ask(calls.history(max(1, min(limit, 10_000)))))
-
-    @app.get("/events")
-    async def get_events(request: Request, after: Optional[int] = None) -> Any:
-        """Server-sent events; ``after`` or the header Last-Event-ID resumes behind an event."""
-        given = request.headers.get("last-event-id", "")
-        since = int(given) if given.isdigit() else after
-        return StreamingResponse(events(host, next(numbers), since), media_type="text/event-stream")
-
+    app.add_exception_handler(BodyError, on_body_error)
+    routes = ServiceRoutes(host)
+    app.add_api_route("/state", routes.get_state)
+    app.add_api_route("/tasks", routes.get_tasks)
+    app.add_api_route(
+        "/tasks", routes.post_task, methods=["POST"], status_code=201, openapi_extra=REQUEST_BODY
+    )
+    app.add_api_route("/tasks/{task_id}", routes.get_task)
+    app.add_api_route("/tasks/{task_id}", routes.delete_task, methods=["DELETE"])
+    app.add_api_route("/history", routes.get_history)
+    app.add_api_route("/events", routes.get_events)
     return app
+
+
+async def on_body_error(_request: Request, error: Exception) -> Response:
+    """Answer a request whose body is no JSON, or too long."""
+    assert isinstance(error, BodyError)
+    return problem_response(error)
 
 
 def problem_response(error: PlanarError) -> Response:
@@ -135,7 +151,7 @@ async def events(host: calls.ServiceHost, key: int, since: Optional[int]) -> Asy
         since: Number of the last event that the client received; None: only new ones.
     """
     loop = asyncio.get_running_loop()
-    waiting: "asyncio.Queue[str]" = asyncio.Queue(MAX_EVENTS_WAITING)
+    waiting: asyncio.Queue[str] = asyncio.Queue(MAX_EVENTS_WAITING)
     is_slow = asyncio.Event()
 
     def put(text: str) -> None:
@@ -162,7 +178,7 @@ async def events(host: calls.ServiceHost, key: int, since: Optional[int]) -> Asy
         host.call(lambda host, _now: lambda: host.listen(key, None))
 
 
-def event_text(number: int, entry: LogEntry) -> str:
+def event_text(number: int, entry: JournalEntry) -> str:
     """Return an event in the format of server-sent events."""
     data: Dict[str, Any] = {
         "unix_millis_time": to_millis(entry.stamp),

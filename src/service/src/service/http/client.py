@@ -16,7 +16,7 @@ ADDRESS_FILE = "service.json"
 RETRY_STATUS = (429, 503, 507)
 
 
-class RefusedError(PlanarError):
+class RequestRefusedError(PlanarError):
     """The service has refused a request.
 
     Attributes:
@@ -52,15 +52,15 @@ class ServiceClient:
             patience: Wall-clock time for which one with an ``id`` is sent again without an answer [s].
 
         Raises:
-            RefusedError: If it is refused.
+            RequestRefusedError: If it is refused.
             SettingsError: If the service does not answer.
         """
         deadline = time.monotonic() + patience
         while True:
             try:
                 return self.call("POST", "/tasks", document)
-            except (RefusedError, SettingsError) as error:
-                is_final = isinstance(error, RefusedError) and error.status not in RETRY_STATUS
+            except (RequestRefusedError, SettingsError) as error:
+                is_final = isinstance(error, RequestRefusedError) and error.status not in RETRY_STATUS
                 if is_final or "id" not in document or time.monotonic() > deadline:
                     raise
             time.sleep(0.2)
@@ -69,7 +69,7 @@ class ServiceClient:
         """Call a path; return its answer.
 
         Raises:
-            RefusedError: If the service refuses the call.
+            RequestRefusedError: If the service refuses the call.
             SettingsError: If it does not answer.
         """
         with self._open(method, path, document) as answer:
@@ -94,7 +94,7 @@ class ServiceClient:
         try:
             return urllib.request.urlopen(request, timeout=ANSWER_SECONDS)
         except urllib.error.HTTPError as error:
-            raise RefusedError(error.code, _problems(error)) from None
+            raise RequestRefusedError(error.code, _problems(error)) from None
         except (OSError, ValueError) as error:
             reason = getattr(error, "reason", error)
             raise SettingsError(f"the service at {self._url} does not answer ({reason})") from None

@@ -2,8 +2,8 @@
 
 from typing import Any, Dict
 
-from service.request import DESCRIPTIONS
-from service.request_parser import MAX_LABELS, MAX_PRIORITY, MAX_STEPS, MAX_TEXT, MAX_WAIT
+from service.requests.parser import MAX_LABELS, MAX_PRIORITY, MAX_STEPS, MAX_TEXT, MAX_WAIT
+from service.requests.request import DESCRIPTIONS
 
 TEXT = {"type": "string", "maxLength": MAX_TEXT}
 MILLIS = {"type": "integer", "description": "Unix time in milliseconds"}

@@ -1,4 +1,4 @@
-"""The HTTP server, in a thread of its own."""
+"""The HTTP server, in a separate thread."""
 
 import json
 import os
@@ -11,7 +11,7 @@ import uvicorn
 
 from planar import SettingsError
 from service.host import ServiceHost
-from service.http.access import LOOPBACK, Guard, new_token
+from service.http.access import LOOPBACK, AccessGuard, new_token
 from service.http.app import make_app
 from service.http.client import ADDRESS_FILE
 
@@ -43,7 +43,7 @@ class HttpServer:
         self.url = f"http://{'[' + address + ']' if ':' in address else address}:{number}"
         hosts = () if address in LOOPBACK else (address, socket.gethostname())
         config = uvicorn.Config(
-            Guard(make_app(host, VERSION), self.token, hosts),
+            AccessGuard(make_app(host, VERSION), self.token, hosts),
             log_level="error",
             access_log=False,
             lifespan="off",
@@ -88,5 +88,7 @@ def _listening(address: str, port: int) -> socket.socket:
     except OSError as error:
         if listening is not None:
             listening.close()
-        raise SettingsError(f"port {port} of {address} cannot be used ({error.strerror}); name another") from None
+        raise SettingsError(
+            f"port {port} of {address} cannot be used ({error.strerror}); name another"
+        ) from None
     return listening

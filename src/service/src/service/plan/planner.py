@@ -4,7 +4,7 @@ from itertools import permutations
 from typing import Dict, Iterable, Iterator, List, Optional, Protocol, Sequence, Tuple
 
 from service.plan.job import PlannedJob, PlanStart, QueuePlan
-from service.plan.rollout import Surroundings, roll_out
+from service.plan.rollout import PlanningModel, roll_out
 
 # Number of jobs for which every order is tried, and whose order is improved; further ones follow by deadline.
 MAX_EXACT, WINDOW = 4, 8
@@ -15,7 +15,7 @@ MAX_TRIALS = 120
 class Planner(Protocol):
     """Decides on the order of jobs."""
 
-    def plan(self, jobs: Sequence[PlannedJob], around: Surroundings, start: PlanStart) -> QueuePlan:
+    def plan(self, jobs: Sequence[PlannedJob], around: PlanningModel, start: PlanStart) -> QueuePlan:
         """Return a plan that contains each job once."""
 
 
@@ -26,7 +26,7 @@ class DeadlinePlanner:
     jobs (Or-opt; Or, 1976) until none helps.
     """
 
-    def plan(self, jobs: Sequence[PlannedJob], around: Surroundings, start: PlanStart) -> QueuePlan:
+    def plan(self, jobs: Sequence[PlannedJob], around: PlanningModel, start: PlanStart) -> QueuePlan:
         """Return the best plan found."""
         plans = [self._plan(jobs, around, start, fills_up) for fills_up in (False, True)]
         if start.charge is None or plans[0].cost[0] < plans[1].cost[0]:
@@ -34,7 +34,7 @@ class DeadlinePlanner:
         return plans[1]
 
     def _plan(
-        self, jobs: Sequence[PlannedJob], around: Surroundings, start: PlanStart, fills_up: bool
+        self, jobs: Sequence[PlannedJob], around: PlanningModel, start: PlanStart, fills_up: bool
     ) -> QueuePlan:
         best: Optional[QueuePlan] = None
         order: Sequence[PlannedJob] = ()
@@ -52,7 +52,7 @@ class DeadlinePlanner:
         self,
         order: List[PlannedJob],
         best: QueuePlan,
-        around: Surroundings,
+        around: PlanningModel,
         start: PlanStart,
         fills_up: bool,
     ) -> Sequence[PlannedJob]:
@@ -80,16 +80,19 @@ class FirstComeFirstServed:
     def __init__(self, threshold: float = 0.3):
         self._threshold = threshold
 
-    def plan(self, jobs: Sequence[PlannedJob], around: Surroundings, start: PlanStart) -> QueuePlan:
+    def plan(self, jobs: Sequence[PlannedJob], around: PlanningModel, start: PlanStart) -> QueuePlan:
         """Return the jobs that are due in the given order, the others behind them."""
         ready = sorted(jobs, key=lambda job: (job.id != start.carrying, job.release > start.now))
-        ready = [*(job for job in ready if job.id == start.current), *(j for j in ready if j.id != start.current)]
+        ready = [
+            *(job for job in ready if job.id == start.current),
+            *(j for j in ready if j.id != start.current),
+        ]
         is_low = start.charge is not None and start.charge < self._threshold
         return roll_out(ready, around, start, fills_up=is_low or start.is_docked)
 
 
 def candidates(
-    jobs: Sequence[PlannedJob], around: Surroundings, start: PlanStart
+    jobs: Sequence[PlannedJob], around: PlanningModel, start: PlanStart
 ) -> Iterator[List[PlannedJob]]:
     """Yield orders that respect what must be done before what."""
     if len(jobs) <= MAX_EXACT:
@@ -104,9 +107,7 @@ def candidates(
     yield in_valid_order(nearest_first(jobs, around, start))
 
 
-def nearest_first(
-    jobs: Sequence[PlannedJob], around: Surroundings, start: PlanStart
-) -> List[PlannedJob]:
+def nearest_first(jobs: Sequence[PlannedJob], around: PlanningModel, start: PlanStart) -> List[PlannedJob]:
     """Return jobs sorted by the time until their first stop is reached or they are due."""
 
     def ready_at(job: PlannedJob) -> Tuple[float, float]:

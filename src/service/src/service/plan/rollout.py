@@ -24,7 +24,7 @@ class TravelTimes(Protocol):
 
 
 @dataclass(frozen=True)
-class Surroundings:
+class PlanningModel:
     """What does not change with the order.
 
     Attributes:
@@ -49,7 +49,7 @@ class Rollout:
         fills_up: Charge to the full once charging; otherwise only as much as the next job needs.
     """
 
-    def __init__(self, surroundings: Surroundings, start: PlanStart, fills_up: bool):
+    def __init__(self, surroundings: PlanningModel, start: PlanStart, fills_up: bool):
         self._around, self._fills_up = surroundings, fills_up
         self._start = self._now = start.now
         self._pose, self._charge = start.pose, start.charge
@@ -95,7 +95,11 @@ class Rollout:
             pose = pose if stop.pose is None else stop.pose
         if job.is_docking and around.dock is not None and not self._is_docked:
             drive = around.travel.seconds(pose, around.dock)
-            seconds, used, pose = seconds + drive + around.docking_seconds, used + drive * self._drive, around.dock
+            seconds, used, pose = (
+                seconds + drive + around.docking_seconds,
+                used + drive * self._drive,
+                around.dock,
+            )
         return seconds, used, pose
 
     def _home(self, pose: Pose2) -> float:
@@ -148,7 +152,7 @@ class Rollout:
 
 
 def roll_out(
-    jobs: Sequence[PlannedJob], surroundings: Surroundings, start: PlanStart, fills_up: bool
+    jobs: Sequence[PlannedJob], surroundings: PlanningModel, start: PlanStart, fills_up: bool
 ) -> QueuePlan:
     """Return the plan that carries out jobs in this order."""
     rollout = Rollout(surroundings, start, fills_up)

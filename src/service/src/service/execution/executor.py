@@ -5,7 +5,8 @@ from typing import Dict, Mapping, Optional
 from pick_objects import DriveToPlace
 from planar import Pose2
 from planar.maps.places import NamedPlace
-from service.activities import (
+from service.config import ServiceSettings
+from service.execution.activities import (
     Activity,
     ActivityDisplaced,
     ActivityDone,
@@ -16,10 +17,9 @@ from service.activities import (
     Standing,
     Undocking,
 )
-from service.config import ServiceSettings
-from service.request import Deliver
-from service.robot import RobotEvent, RobotInputs, RobotOrder, StopRobot
-from service.steps import DRIVES, Drive, DriveToObject, EnterDock, Pause, PickUp, SetDown, Step
+from service.execution.robot import RobotEvent, RobotInputs, RobotOrder, StopRobot
+from service.requests.request import Deliver
+from service.requests.steps import DRIVES, Drive, DriveToObject, EnterDock, Pause, PickUp, SetDown, Step
 from service.task import ObjectState, ServiceTask, TaskStatus
 from service.task_book import TaskBook
 

@@ -6,10 +6,10 @@ from datetime import tzinfo
 from typing import Any, Callable, Collection, Dict, List, Mapping, Optional
 
 from planar.config.hints import hint, hint_or_choices
-from service.calendar_times import clock_text, next_repetition, parse_time
 from service.errors import RequestError
-from service.request import DESCRIPTIONS, JSON_NAMES, Request, from_millis
-from service.request_text import parse_text
+from service.requests.calendar_times import clock_text, next_repetition, parse_time
+from service.requests.request import DESCRIPTIONS, JSON_NAMES, TaskRequest, from_millis
+from service.requests.text import parse_text
 
 MAX_PRIORITY, MAX_TEXT, MAX_LABELS, MAX_STEPS, MAX_WAIT = 9, 200, 20, 1000, 86400.0
 # Times further away are mistakes, such as seconds for milliseconds [s].
@@ -52,7 +52,7 @@ class RequestParser:
     now: float
     problems: List[str] = field(default_factory=list)
 
-    def parse(self, document: Any) -> Request:
+    def parse(self, document: Any) -> TaskRequest:
         """Return the request of a document.
 
         Raises:
@@ -74,7 +74,7 @@ class RequestParser:
         earliest = self._check_times(earliest, deadline, repeat)
         if self.problems:
             raise RequestError(self.problems)
-        return Request(description, priority, earliest, deadline, self.now, repeat, requester, labels)
+        return TaskRequest(description, priority, earliest, deadline, self.now, repeat, requester, labels)
 
     def _with_text(self, document: Mapping[str, Any]) -> Mapping[str, Any]:
         if "text" not in document:
@@ -195,7 +195,9 @@ class RequestParser:
             return None
         seconds = from_millis(int(value)) if abs(value) < 1e15 else math.inf
         if seconds is None or abs(seconds - self.now) > MAX_AHEAD:
-            self.problems.append(f"{key}: {value:.15g} ms is more than a year from now; expected Unix milliseconds")
+            self.problems.append(
+                f"{key}: {value:.15g} ms is more than a year from now; expected Unix milliseconds"
+            )
             return None
         return seconds
 
@@ -218,7 +220,7 @@ class RequestParser:
         return earliest
 
 
-def parse_request(document: Any, known: Knowledge, now: float) -> Request:
+def parse_request(document: Any, known: Knowledge, now: float) -> TaskRequest:
     """Return the valid request of a JSON document.
 
     Args:

@@ -4,8 +4,8 @@ from dataclasses import replace
 from datetime import datetime, tzinfo
 from typing import Optional
 
-from service.calendar_times import DAY, clock_text, next_repetition
-from service.request import Request
+from service.requests.calendar_times import DAY, clock_text, next_repetition
+from service.requests.request import TaskRequest
 from service.task import Series, ServiceTask, TaskStatus
 from service.task_book import TaskBook
 
@@ -45,7 +45,7 @@ class Repetitions:
         return self._skip_superseded(now) or is_changed
 
     def _skip_superseded(self, now: float) -> bool:
-        """Skip repetitions that were not started before the next one is due, unless their deadline is later."""
+        """Skip repetitions that were not started when the next one is due, but for later deadlines."""
         waiting = [task for task in self._book.tasks.values() if task.series and task.started_at is None]
         latest = {task.series: task for task in waiting if task.request.release <= now}
         old = [
@@ -90,7 +90,7 @@ class Repetitions:
         self._book.put(task)
 
 
-def _repetition(request: Request, start: float) -> Request:
+def _repetition(request: TaskRequest, start: float) -> TaskRequest:
     """Return the request of one repetition; its deadline is as long after its start as that of the first."""
     deadline = request.deadline
     if deadline is not None:

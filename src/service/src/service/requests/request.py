@@ -7,7 +7,7 @@ requester, labels, unix_millis_earliest_start_time. A deadline and repetition ar
 from dataclasses import asdict, dataclass
 from typing import Any, ClassVar, Dict, Mapping, Optional, Tuple, Type, Union
 
-from service.steps import Drive, DriveToObject, EnterDock, Pause, PickUp, SetDown, Step
+from service.requests.steps import Drive, DriveToObject, EnterDock, Pause, PickUp, SetDown, Step
 
 # Names of fields in JSON where they differ from the attributes.
 JSON_NAMES = {"object_name": "object", "source": "from", "destination": "to"}
@@ -97,7 +97,7 @@ DESCRIPTIONS: Mapping[str, Type[Any]] = {
 
 
 @dataclass(frozen=True)
-class Request:
+class TaskRequest:
     """A valid request.
 
     Attributes:
@@ -131,7 +131,7 @@ class Request:
         return self.request_time if self.earliest_start is None else self.earliest_start
 
 
-def request_to_json(request: Request) -> Dict[str, Any]:
+def request_to_json(request: TaskRequest) -> Dict[str, Any]:
     """Return a request as JSON values, without what is not set."""
     values = asdict(request.description)
     description = {JSON_NAMES.get(name, name): value for name, value in values.items() if value != ""}
@@ -149,13 +149,13 @@ def request_to_json(request: Request) -> Dict[str, Any]:
     return {name: value for name, value in document.items() if value not in (None, "", [])}
 
 
-def request_from_json(document: Mapping[str, Any]) -> Request:
+def request_from_json(document: Mapping[str, Any]) -> TaskRequest:
     """Return a request that ``request_to_json`` wrote; for what people send, see ``parse_request``."""
     attributes = {name: attribute for attribute, name in JSON_NAMES.items()}
     values = {attributes.get(name, name): value for name, value in document["description"].items()}
     if "places" in values:
         values["places"] = tuple(values["places"])
-    return Request(
+    return TaskRequest(
         DESCRIPTIONS[document["category"]](**values),
         document["priority"]["value"],
         from_millis(document.get("unix_millis_earliest_start_time")),

@@ -3,11 +3,19 @@
 from dataclasses import dataclass
 from typing import Optional, Protocol, Union
 
-from pick_objects import DriveToPlace, ErrandSettings, GoalFailed, GoalReached, RobotDisplaced
+from pick_objects import ErrandSettings, GoalFailed, GoalReached, RobotDisplaced
 from pick_objects.approach import PlaceApproach, PlaceReached, PlaceUnreachable
 from planar.maps.places import NamedPlace
 from service.config import ServiceSettings
-from service.robot import DockingFailed, DockRobot, RobotDocked, RobotEvent, RobotOrder, RobotUndocked, UndockRobot
+from service.execution.robot import (
+    DockingFailed,
+    DockRobot,
+    RobotDocked,
+    RobotEvent,
+    RobotOrder,
+    RobotUndocked,
+    UndockRobot,
+)
 
 
 @dataclass(frozen=True)

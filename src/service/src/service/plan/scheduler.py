@@ -6,11 +6,11 @@ from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 from planar import Pose2
 from planar.maps.places import NamedPlace
 from service.config import ServiceSettings
+from service.execution.robot import RobotInputs
 from service.plan.job import CHARGE, PlannedJob, PlanStart, QueuePlan, Stop
 from service.plan.planner import DeadlinePlanner, Planner
-from service.plan.rollout import Surroundings, roll_out
-from service.robot import RobotInputs
-from service.steps import Drive, DriveToObject, EnterDock, Pause, PickUp, SetDown, Step
+from service.plan.rollout import PlanningModel, roll_out
+from service.requests.steps import Drive, DriveToObject, EnterDock, Pause, PickUp, SetDown, Step
 from service.task import ServiceTask
 from service.task_book import TaskBook
 
@@ -33,7 +33,7 @@ class QueueScheduler:
         self,
         book: TaskBook,
         places: Mapping[str, NamedPlace],
-        surroundings: Surroundings,
+        surroundings: PlanningModel,
         settings: ServiceSettings,
         planner: Optional[Planner] = None,
     ):

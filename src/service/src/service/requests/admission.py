@@ -5,9 +5,9 @@ from typing import Any, Callable, List, Mapping, Optional, Union
 
 from planar.maps.places import NamedPlace
 from service.errors import QueueFullError, RequestError, TaskEndedError, UnknownTaskError
-from service.repetitions import Repetitions
-from service.request import Deliver, Fetch
-from service.request_parser import Knowledge, parse_request
+from service.requests.parser import Knowledge, parse_request
+from service.requests.repetitions import Repetitions
+from service.requests.request import Deliver, Fetch
 from service.task import ObjectState, Series, ServiceTask
 from service.task_book import TaskBook
 
@@ -129,7 +129,7 @@ class Admission:
                 raise RequestError([f"description: to: {name} is at {where} already"])
 
     def _trust(self, description: Deliver) -> None:
-        """Note where the request says that the object is, unless an open request moves it."""
+        """Note where the object is according to the request, unless an open request moves it."""
         name = description.object_name
         if self._book.object_after_queue(name) is None:
             pose = self._places[description.source].pose

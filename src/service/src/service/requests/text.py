@@ -4,8 +4,8 @@ import re
 from typing import Any, Callable, Dict, List, Tuple
 
 from planar.config.hints import hint_or_choices
-from service.calendar_times import parse_duration
 from service.errors import RequestError
+from service.requests.calendar_times import parse_duration
 
 FORMS: Dict[str, Tuple[str, "re.Pattern[str]"]] = {
     "deliver": ("deliver OBJECT from PLACE to PLACE", re.compile(r"(\S+) from (\S+) to (\S+)")),
