@@ -4,9 +4,9 @@
 python3 tests/benchmarks/service_kills.py [--kills 1000] [--seed 0]
 
 The service, with its journal, runs in a process that is killed with SIGKILL after a random time, at whatever
-instruction it is, and started again. The robot, the objects and the clients live in this process. They know only
-what the service has published after it was journaled, as move_base, markers and HTTP clients do; a client that got
-no answer sends its request again under the same id. Checked at the end and after each kill:
+instruction it is, and started again. The robot, the objects and the clients live in this process. They know
+only what the service has published after it was journaled, as move_base, markers and HTTP clients do; a
+client that got no answer sends its request again under the same id. Checked:
 
 * each accepted request is in the journal, open or ended, and none ends twice
 * each object is picked up and set down once for each request that has moved it, in this order
@@ -39,8 +39,9 @@ from service.task import TaskStatus
 
 START = 1796025600.0
 DOCK = Pose2(0.5, -3.0)
-# Simulated time of a cycle, and longest life of a process [s].
-CYCLE, LONGEST_LIFE = 2.0, 0.15
+# Simulated time of a cycle [s]. A process is killed a random time after a random number of cycles; some while
+# they start.
+CYCLE, MOST_CYCLES, LONGEST_DELAY, EARLY_SHARE = 2.0, 30, 0.02, 0.2
 OBJECTS = 5
 
 
@@ -137,7 +138,7 @@ class Campaign:
     def run(self, kills):
         """Run the campaign; return the faults that were found."""
         while self.kills < kills:
-            self._live(self.rng.uniform(0.0, LONGEST_LIFE))
+            self._live(0 if self.rng.random() < EARLY_SHARE else int(self.rng.integers(1, MOST_CYCLES)))
             if self.kills % 100 == 0:
                 print(
                     f"{self.kills} kills, {len(self.client.accepted)} accepted, {self.cycles} cycles",
@@ -146,27 +147,27 @@ class Campaign:
         self._live(None)
         return [*self.world.faults, *self.refused, *self._check()]
 
-    def _live(self, seconds):
-        """Start the service; kill it after a time, or let it finish what is open."""
+    def _live(self, cycles):
+        """Start the service; kill it after a number of cycles, or let it finish what is open."""
         ours, theirs = multiprocessing.Pipe()
         process = multiprocessing.get_context("fork").Process(
             target=serve, args=(self.path, self.site, theirs), daemon=True
         )
         process.start()
         theirs.close()
-        timer = None
-        if seconds is not None:
-            timer = threading.Timer(seconds, os.kill, (process.pid, signal.SIGKILL))
-            timer.start()
+        timer = threading.Timer(self.rng.uniform(0.0, LONGEST_DELAY), os.kill, (process.pid, signal.SIGKILL))
         try:
-            while self._cycle(ours, is_last=seconds is None):
-                pass
+            while cycles is None or cycles > 0:
+                cycles = None if cycles is None else cycles - 1
+                if not self._cycle(ours, is_last=cycles is None):
+                    process.kill()
+                    break
+            else:
+                timer.start()
+                while True:
+                    self._cycle(ours, is_last=False)
         except (EOFError, ConnectionError):
             self.kills += 1
-        if timer is not None:
-            timer.join()
-        else:
-            process.kill()
         process.join()
         if process.exitcode != -signal.SIGKILL:
             self.world.faults.append(f"the service ended by itself with exit code {process.exitcode}")
@@ -235,9 +236,10 @@ def main():
         faults = campaign.run(options.kills)
         size = campaign.path.stat().st_size
     print(
-        f"{campaign.kills} kills in {campaign.cycles} cycles, {(campaign.now - START) / 3600.0:.1f} simulated hours, "
-        f"{time.monotonic() - started:.0f} s: {len(campaign.client.accepted)} requests accepted, "
-        f"{campaign.completed} completed, {len(campaign.world.deeds)} pick-ups and set-downs, journal {size // 1024} kB"
+        f"{campaign.kills} kills in {campaign.cycles} cycles, "
+        f"{(campaign.now - START) / 3600.0:.1f} simulated hours, {time.monotonic() - started:.0f} s: "
+        f"{len(campaign.client.accepted)} requests accepted, {campaign.completed} completed, "
+        f"{len(campaign.world.deeds)} pick-ups and set-downs, journal {size // 1024} kB"
     )
     for fault in faults[:20]:
         print(f"fault: {fault}")

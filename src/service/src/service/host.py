@@ -22,7 +22,7 @@ MAX_CALLS = 500
 
 # Acts on the service at a Unix time; what it returns is called after planning, for the answer.
 Act = Callable[["ServiceHost", float], Callable[[], Any]]
-Listener = Callable[[int, JournalEntry], None]
+Listener = Callable[[int, JournalEntry], object]
 
 
 @dataclass(frozen=True)

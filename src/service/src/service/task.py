@@ -64,6 +64,8 @@ class ServiceTask:
     @property
     def is_carrying(self) -> bool:
         """Whether its object is on the robot."""
+        if self.step == 0 or not self.request.object_name:
+            return False
         done = self.request.description.steps()[: self.step]
         return any(isinstance(each, PickUp) for each in done) and not any(
             isinstance(each, SetDown) for each in done

@@ -68,7 +68,8 @@ class KinematicRobot:
         self._travel, self._dock, self._rng, self._settings = travel, dock, rng, settings
         self.pose = dock if pose is None else pose
         self.is_docked, self.charge = self.pose == dock, 1.0
-        self.metres, self.empty_at = 0.0, None  # type: Tuple[float, Optional[float]]
+        self.metres = 0.0
+        self.empty_at: Optional[float] = None
         self._now = -math.inf
         self._start, self._goal, self._departed = self.pose, self.pose, 0.0
         self._event: Optional[RobotEvent] = None

@@ -10,6 +10,11 @@ from service.plan.rollout import PlanningModel, roll_out
 MAX_EXACT, WINDOW = 4, 8
 # Orders that are tried at most while one is improved.
 MAX_TRIALS = 120
+# Jobs whose order is compared at all; the less urgent ones of a longer queue follow.
+MOST_COMPARED = 40
+# A job without deadline is ranked as if it had one that long after its release; a level of priority counts as
+# much as this earlier deadline [s].
+ASSUMED_SLACK, PRIORITY_SECONDS = 4.0 * 3600.0, 3600.0
 
 
 class Planner(Protocol):
@@ -28,17 +33,19 @@ class DeadlinePlanner:
 
     def plan(self, jobs: Sequence[PlannedJob], around: PlanningModel, start: PlanStart) -> QueuePlan:
         """Return the best plan found."""
-        plans = [self._plan(jobs, around, start, fills_up) for fills_up in (False, True)]
-        if start.charge is None or plans[0].cost[0] < plans[1].cost[0]:
-            return plans[0]
-        return plans[1]
+        least = self._plan(jobs, around, start, fills_up=False)
+        if start.charge is None:
+            return least
+        full = self._plan(jobs, around, start, fills_up=True)
+        return least if least.cost[0] < full.cost[0] else full
 
     def _plan(
         self, jobs: Sequence[PlannedJob], around: PlanningModel, start: PlanStart, fills_up: bool
     ) -> QueuePlan:
         best: Optional[QueuePlan] = None
         order: Sequence[PlannedJob] = ()
-        for candidate in candidates(jobs, around, start):
+        ranked = in_valid_order(sorted(jobs, key=urgency))
+        for candidate in candidates(ranked[:MOST_COMPARED], around, start):
             plan = roll_out(candidate[:WINDOW], around, start, fills_up)
             if best is None or plan.cost < best.cost:
                 best, order = plan, candidate
@@ -46,7 +53,7 @@ class DeadlinePlanner:
             return QueuePlan()
         if len(jobs) > MAX_EXACT:
             order = self._improve(list(order), best, around, start, fills_up)
-        return roll_out(order, around, start, fills_up)
+        return roll_out([*order, *ranked[MOST_COMPARED:]], around, start, fills_up)
 
     def _improve(
         self,
@@ -89,6 +96,13 @@ class FirstComeFirstServed:
         ]
         is_low = start.charge is not None and start.charge < self._threshold
         return roll_out(ready, around, start, fills_up=is_low or start.is_docked)
+
+
+def urgency(job: PlannedJob) -> float:
+    """Return a key by which the most urgent jobs come first [s]."""
+    assumed = job.release + ASSUMED_SLACK
+    deadline = assumed if job.deadline is None else min(job.deadline, assumed)
+    return deadline - PRIORITY_SECONDS * job.priority
 
 
 def candidates(

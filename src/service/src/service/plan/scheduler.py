@@ -1,6 +1,5 @@
 """From tasks to a plan, and from a plan to what the robot does next."""
 
-from dataclasses import replace
 from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 
 from planar import Pose2
@@ -13,6 +12,9 @@ from service.plan.rollout import PlanningModel, roll_out
 from service.requests.steps import Drive, DriveToObject, EnterDock, Pause, PickUp, SetDown, Step
 from service.task import ServiceTask
 from service.task_book import TaskBook
+
+# Change of a planned end that is not noted [s].
+SAME_SECONDS = 1.0
 
 
 class QueueScheduler:
@@ -40,6 +42,7 @@ class QueueScheduler:
         self._book, self._places, self._around, self._settings = book, places, surroundings, settings
         self._planner: Planner = planner or DeadlinePlanner()
         self.plan = QueuePlan()
+        self._cache: Dict[str, Tuple[ServiceTask, PlannedJob]] = {}
 
     def update(self, now: float, robot: RobotInputs, current: str) -> List[ServiceTask]:
         """Plan again.
@@ -57,7 +60,7 @@ class QueueScheduler:
         start = PlanStart(
             now, robot.pose, charge, robot.is_docked, current, "" if carrying is None else carrying.id
         )
-        jobs = self._jobs(robot.pose)
+        jobs = self._jobs()
         self.plan = self._planner.plan(jobs, self._around, start)
         if current and isinstance(self._planner, DeadlinePlanner):
             self.plan = self._keep_current(jobs, start)
@@ -80,12 +83,15 @@ class QueueScheduler:
         ends = {entry.id: entry.end for entry in self.plan.entries}
         late = []
         for task in list(self._book.tasks.values()):
-            self._book.estimate(task.id, ends.get(task.id))
-            if replace(task, estimate=ends.get(task.id)).is_late and not task.is_late:
+            end = ends.get(task.id)
+            if end is not None and task.estimate is not None and abs(end - task.estimate) < SAME_SECONDS:
+                continue
+            self._book.estimate(task.id, end)
+            if self._book.task(task.id).is_late and not task.is_late:
                 late.append(self._book.task(task.id))
         return late
 
-    def _jobs(self, robot: Pose2) -> List[PlannedJob]:
+    def _jobs(self) -> List[PlannedJob]:
         latest: Dict[str, str] = {}
         carrying = self._book.carrying_task
         if carrying is not None:
@@ -96,14 +102,25 @@ class QueueScheduler:
             if name:
                 after = [latest[key] for key in (name, "*") if key in latest and latest[key] != task.id]
                 latest[name] = task.id
-            jobs.append(self._job(task, robot, tuple(after)))
+            jobs.append(self._job(task, tuple(after)))
+        if len(self._cache) > 2 * len(jobs) + 100:
+            self._cache = {job.id: self._cache[job.id] for job in jobs}
         return jobs
 
-    def _job(self, task: ServiceTask, robot: Pose2, after: Tuple[str, ...]) -> PlannedJob:
+    def _job(self, task: ServiceTask, after: Tuple[str, ...]) -> PlannedJob:
+        """Return the job of a task; that of an unchanged task without object is not made again."""
+        cached = self._cache.get(task.id)
+        if cached is not None and cached[0] is task and not task.request.object_name:
+            return cached[1]
+        job = self._new_job(task, after)
+        self._cache[task.id] = (task, job)
+        return job
+
+    def _new_job(self, task: ServiceTask, after: Tuple[str, ...]) -> PlannedJob:
         request, steps = task.request, task.request.description.steps()
         return PlannedJob(
             task.id,
-            self._stops(task, steps, robot),
+            self._stops(task, steps),
             request.release,
             request.deadline,
             request.priority,
@@ -112,7 +129,7 @@ class QueueScheduler:
             not request.object_name,
         )
 
-    def _stops(self, task: ServiceTask, steps: Sequence[Step], robot: Pose2) -> Tuple[Stop, ...]:
+    def _stops(self, task: ServiceTask, steps: Sequence[Step]) -> Tuple[Stop, ...]:
         """Remaining drives and times of standing; standing belongs to the place of the drive before."""
         first = task.step
         while 0 < first < len(steps) and not isinstance(steps[first], (Drive, DriveToObject)):

@@ -139,7 +139,7 @@ class ServiceNode:
 def _settings() -> Tuple[NodeSettings, ServiceSettings, EnergySettings]:
     names = {name for kind in KINDS for name in kind.__dataclass_fields__}
     read = [read_settings(kind, ignore=names - set(kind.__dataclass_fields__)) for kind in KINDS]
-    return read[0], read[1], read[2]  # type: ignore[return-value]
+    return read[0], read[1], read[2]
 
 
 def _origin(latest: float) -> float:
