@@ -172,6 +172,7 @@ run_command() { # PACKAGE NAME ARGUMENT...: a command, after the set-up it needs
     case $1 in
         laboratory) extras+=(laboratory) ;;
         home_service_gym) extras+=(gymnasium) ;;
+        service) extras+=(service) ;;
     esac
     set_up "${extras[@]}"
     enter_workspace

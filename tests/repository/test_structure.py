@@ -21,6 +21,7 @@ LAYERS = (
     {"cockpit"},
     {"evaluation"},
     {"headless_mission"},
+    {"service"},
     {"plugin_examples", "turtle_world", "gazebo_ros", "ros_tools", "ament_index_python"}
     | {"turtlebot3_fake", "turtlebot3_gazebo", "turtlebot3_example", "rtabmap_ros", "multirobot_map_merge"},
     {"run_project", "laboratory"},

@@ -78,6 +78,10 @@ class GoalDriver:
             self._send(order)
         return self._measure(order) if isinstance(order, MeasurePathLengths) else None
 
+    def discard_order(self) -> None:
+        """Discard the last order: no further event of it is reported."""
+        self._order = None
+
     def event(self, now: float) -> Union[None, GoalReached, GoalFailed, RobotDisplaced]:
         """Return the outcome of the last goal once; None while the robot drives or stands there.
 

@@ -1,0 +1,1 @@
+"""A day of service without physics: generated requests, a robot without physics."""

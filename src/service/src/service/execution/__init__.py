@@ -1,0 +1,1 @@
+"""Execution of tasks: steps, activities, orders to the robot."""

@@ -1,0 +1,197 @@
+"""What the robot is doing: driving, handling an object, standing, docking, undocking."""
+
+from dataclasses import dataclass
+from typing import Optional, Protocol, Union
+
+from pick_objects import ErrandSettings, GoalFailed, GoalReached, RobotDisplaced
+from pick_objects.approach import PlaceApproach, PlaceReached, PlaceUnreachable
+from planar.maps.places import NamedPlace
+from service.config import ServiceSettings
+from service.execution.robot import (
+    DockingFailed,
+    DockRobot,
+    RobotDocked,
+    RobotEvent,
+    RobotOrder,
+    RobotUndocked,
+    UndockRobot,
+)
+
+
+@dataclass(frozen=True)
+class ActivityDone:
+    """The activity has ended as intended."""
+
+
+@dataclass(frozen=True)
+class ActivityFailed:
+    """The activity has failed.
+
+    Attributes:
+        reason: Explanation for people.
+    """
+
+    reason: str
+
+
+@dataclass(frozen=True)
+class ActivityDisplaced:
+    """The robot is no longer where the activity takes place."""
+
+
+Outcome = Union[None, ActivityDone, ActivityFailed, ActivityDisplaced, RobotOrder]
+
+
+class Activity(Protocol):
+    """What the robot does; ``now`` is elapsed time [s].
+
+    Attributes:
+        text: Present participle for people: ``driving to kitchen``.
+        is_interruptible: Whether a more urgent task may take its place.
+        wakes_at: Elapsed time at which it has to be advanced without an event [s]; None: only with one.
+    """
+
+    text: str
+    is_interruptible: bool
+
+    @property
+    def wakes_at(self) -> Optional[float]: ...
+
+    def start(self, now: float) -> Optional[RobotOrder]:
+        """Return the first order."""
+
+    def advance(self, now: float, event: Optional[RobotEvent]) -> Outcome:
+        """Return its end, or a further order; None while nothing changes."""
+
+
+class Driving:
+    """Drives to a place."""
+
+    is_interruptible = True
+
+    def __init__(self, place: NamedPlace, settings: ServiceSettings):
+        self.text = f"driving to {place.name}"
+        errand = ErrandSettings(
+            goal_timeout=settings.goal_timeout,
+            attempts=settings.attempts,
+            retry_seconds=settings.retry_seconds,
+        )
+        self._approach, self._poll = PlaceApproach(place, errand), settings.retry_seconds
+        self._now = 0.0
+
+    @property
+    def wakes_at(self) -> Optional[float]:
+        return self._now + max(self._poll, 1.0)
+
+    def start(self, now: float) -> Optional[RobotOrder]:
+        self._now = now
+        return self._approach.start(now)
+
+    def advance(self, now: float, event: Optional[RobotEvent]) -> Outcome:
+        self._now = now
+        is_drive = isinstance(event, (GoalReached, GoalFailed))
+        answer = self._approach.advance(now, event if is_drive else None)  # type: ignore[arg-type]
+        if isinstance(answer, PlaceReached):
+            return ActivityDone()
+        if isinstance(answer, PlaceUnreachable):
+            return ActivityFailed(answer.reason)
+        return answer
+
+
+class Standing:
+    """Stands for a time: to pick up, to set down, or to wait.
+
+    Args:
+        text: What is done meanwhile.
+        seconds: Duration [s].
+        is_interruptible: Whether a more urgent task may take its place.
+    """
+
+    def __init__(self, text: str, seconds: float, is_interruptible: bool = False):
+        self.text, self.is_interruptible = text, is_interruptible
+        self._seconds, self._until = seconds, 0.0
+
+    @property
+    def wakes_at(self) -> Optional[float]:
+        return self._until
+
+    def start(self, now: float) -> Optional[RobotOrder]:
+        self._until = now + self._seconds
+        return None
+
+    def advance(self, now: float, event: Optional[RobotEvent]) -> Outcome:
+        if isinstance(event, RobotDisplaced):
+            return ActivityDisplaced()
+        return ActivityDone() if now >= self._until else None
+
+
+class Docking:
+    """Drives into the dock, again after a pause if it fails.
+
+    Args:
+        settings: The pause.
+        attempts: Number of attempts; None: until it succeeds.
+    """
+
+    is_interruptible = True
+    text = "docking"
+
+    def __init__(self, settings: ServiceSettings, attempts: Optional[int] = None):
+        self._pause, self._left = settings.dock_retry_seconds, attempts
+        self._retry_at: Optional[float] = None
+
+    @property
+    def wakes_at(self) -> Optional[float]:
+        return self._retry_at
+
+    def start(self, now: float) -> Optional[RobotOrder]:
+        self._retry_at = None
+        return DockRobot()
+
+    def advance(self, now: float, event: Optional[RobotEvent]) -> Outcome:
+        if isinstance(event, RobotDocked):
+            return ActivityDone()
+        if isinstance(event, DockingFailed):
+            self._left = None if self._left is None else self._left - 1
+            if self._left == 0:
+                return ActivityFailed(f"not docked: {event.reason}")
+            self._retry_at = now + self._pause
+            self.text = f"docking again after: {event.reason}"
+        if self._retry_at is not None and now >= self._retry_at:
+            return self.start(now)
+        return None
+
+
+class Undocking:
+    """Leaves the dock, again after a pause if that fails, then goes on with another activity.
+
+    Args:
+        following: What is done next.
+        settings: The pause, and the number of attempts.
+    """
+
+    is_interruptible = False
+    text = "undocking"
+
+    def __init__(self, following: Activity, settings: ServiceSettings):
+        self.following, self._settings = following, settings
+        self._left = settings.attempts
+        self._retry_at: Optional[float] = None
+
+    @property
+    def wakes_at(self) -> Optional[float]:
+        return self._retry_at
+
+    def start(self, now: float) -> Optional[RobotOrder]:
+        self._retry_at = None
+        return UndockRobot()
+
+    def advance(self, now: float, event: Optional[RobotEvent]) -> Outcome:
+        if isinstance(event, RobotUndocked):
+            return ActivityDone()
+        if isinstance(event, DockingFailed):
+            self._left -= 1
+            if self._left == 0:
+                return ActivityFailed(f"not undocked: {event.reason}")
+            self._retry_at = now + self._settings.dock_retry_seconds
+        return self.start(now) if self._retry_at is not None and now >= self._retry_at else None

@@ -1,0 +1,1 @@
+"""Validation, acceptance and repetition of requests."""

@@ -1,0 +1,177 @@
+"""Requests to the robot: what to do, when, how urgently, and for whom.
+
+Names follow Open-RMF's task request (rmf_api_msgs: task_request.json): category, description, priority,
+requester, labels, unix_millis_earliest_start_time. A deadline and repetition are additions.
+"""
+
+from dataclasses import asdict, dataclass
+from typing import Any, ClassVar, Dict, Mapping, Optional, Tuple, Type, Union
+
+from service.requests.steps import Drive, DriveToObject, EnterDock, Pause, PickUp, SetDown, Step
+
+# Names of fields in JSON where they differ from the attributes.
+JSON_NAMES = {"object_name": "object", "source": "from", "destination": "to"}
+
+
+@dataclass(frozen=True)
+class Deliver:
+    """Carry an object from one place to another."""
+
+    category: ClassVar[str] = "deliver"
+    object_name: str
+    source: str
+    destination: str
+
+    def steps(self) -> Tuple[Step, ...]:
+        name = self.object_name
+        return Drive(self.source), PickUp(name), Drive(self.destination), SetDown(name, self.destination)
+
+
+@dataclass(frozen=True)
+class Fetch:
+    """Carry an object to a place, from where it is known to be."""
+
+    category: ClassVar[str] = "fetch"
+    object_name: str
+    destination: str
+
+    def steps(self) -> Tuple[Step, ...]:
+        name = self.object_name
+        return DriveToObject(name), PickUp(name), Drive(self.destination), SetDown(name, self.destination)
+
+
+@dataclass(frozen=True)
+class Go:
+    """Drive to a place."""
+
+    category: ClassVar[str] = "go"
+    place: str
+
+    def steps(self) -> Tuple[Step, ...]:
+        return (Drive(self.place),)
+
+
+@dataclass(frozen=True)
+class Patrol:
+    """Drive to places in turn, several rounds (Open-RMF: patrol)."""
+
+    category: ClassVar[str] = "patrol"
+    places: Tuple[str, ...]
+    rounds: int = 1
+
+    def steps(self) -> Tuple[Step, ...]:
+        return tuple(map(Drive, self.places)) * self.rounds
+
+
+@dataclass(frozen=True)
+class Wait:
+    """Stand for a time, at a place if one is named.
+
+    Attributes:
+        seconds: Duration [s].
+        place: Where to wait; empty: where the robot is.
+    """
+
+    category: ClassVar[str] = "wait"
+    seconds: float
+    place: str = ""
+
+    def steps(self) -> Tuple[Step, ...]:
+        return (*((Drive(self.place),) if self.place else ()), Pause(self.seconds))
+
+
+@dataclass(frozen=True)
+class GoToDock:
+    """Drive into the dock."""
+
+    category: ClassVar[str] = "dock"
+
+    def steps(self) -> Tuple[Step, ...]:
+        return (EnterDock(),)
+
+
+Description = Union[Deliver, Fetch, Go, Patrol, Wait, GoToDock]
+DESCRIPTIONS: Mapping[str, Type[Any]] = {
+    kind.category: kind for kind in (Deliver, Fetch, Go, Patrol, Wait, GoToDock)
+}
+
+
+@dataclass(frozen=True)
+class TaskRequest:
+    """A valid request.
+
+    Attributes:
+        description: What to do.
+        priority: 0 to MAX_PRIORITY, the most urgent.
+        earliest_start: Unix time before which it must not be started [s]; None: at once.
+        deadline: Unix time by which it is to be done [s]; None: none.
+        request_time: Unix time of the request [s].
+        repeat: Cron expression of its repetitions, in local time; empty: once.
+        requester: Who asks for it.
+        labels: Texts that are kept with it.
+    """
+
+    description: Description
+    priority: int = 0
+    earliest_start: Optional[float] = None
+    deadline: Optional[float] = None
+    request_time: float = 0.0
+    repeat: str = ""
+    requester: str = ""
+    labels: Tuple[str, ...] = ()
+
+    @property
+    def object_name(self) -> str:
+        """Object that it moves; empty if it moves none."""
+        return getattr(self.description, "object_name", "")
+
+    @property
+    def release(self) -> float:
+        """Unix time from which on it may be worked on [s]."""
+        return self.request_time if self.earliest_start is None else self.earliest_start
+
+
+def request_to_json(request: TaskRequest) -> Dict[str, Any]:
+    """Return a request as JSON values, without what is not set."""
+    values = asdict(request.description)
+    description = {JSON_NAMES.get(name, name): value for name, value in values.items() if value != ""}
+    document: Dict[str, Any] = {
+        "category": request.description.category,
+        "description": description,
+        "priority": {"type": "level", "value": request.priority},
+        "unix_millis_request_time": to_millis(request.request_time),
+        "unix_millis_earliest_start_time": to_millis(request.earliest_start),
+        "unix_millis_deadline": to_millis(request.deadline),
+        "repeat": request.repeat,
+        "requester": request.requester,
+        "labels": list(request.labels),
+    }
+    return {name: value for name, value in document.items() if value not in (None, "", [])}
+
+
+def request_from_json(document: Mapping[str, Any]) -> TaskRequest:
+    """Return a request that ``request_to_json`` wrote; for what people send, see ``parse_request``."""
+    attributes = {name: attribute for attribute, name in JSON_NAMES.items()}
+    values = {attributes.get(name, name): value for name, value in document["description"].items()}
+    if "places" in values:
+        values["places"] = tuple(values["places"])
+    return TaskRequest(
+        DESCRIPTIONS[document["category"]](**values),
+        document["priority"]["value"],
+        from_millis(document.get("unix_millis_earliest_start_time")),
+        from_millis(document.get("unix_millis_deadline")),
+        from_millis(document["unix_millis_request_time"]) or 0.0,
+        document.get("repeat", ""),
+        document.get("requester", ""),
+        tuple(document.get("labels", ())),
+    )
+
+
+def to_millis(seconds: Optional[float]) -> Optional[int]:
+    """Convert Unix seconds to milliseconds; None stays None."""
+    return None if seconds is None else round(1000.0 * seconds)
+
+
+def from_millis(millis: Optional[int]) -> Optional[float]:
+    """Convert Unix milliseconds to seconds; None stays None."""
+    return None if millis is None else millis / 1000.0

@@ -1,0 +1,1 @@
+"""ROS interface of the service."""
