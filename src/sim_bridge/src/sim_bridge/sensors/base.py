@@ -112,6 +112,7 @@ class SensorContext(Protocol):
         Returns:
             The length (N,) of each ray, infinite without a hit [m], and the laser_retro (N,) of what it hits.
         """
+
     def docks(self) -> List[Pose2]:
         """Return the poses of all docks in the world."""
 

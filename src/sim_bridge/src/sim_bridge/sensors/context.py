@@ -92,6 +92,7 @@ class RobotSensorContext:
         lengths, links = self._vehicle.cast_rays(origin, directions, max_range)
         retros = {link: self._view.laser_retro(link) for link in set(links)}
         return lengths, np.array([retros[link] for link in links])
+
     def docks(self) -> List[Pose2]:
         return self._view.docks()
 

@@ -96,6 +96,7 @@ class SceneView:
         """Return the largest laser_retro of a body's collisions; 0 for the name of no body."""
         parts = self._bodies[link].collisions if link in self._bodies else ()
         return max((part.laser_retro for part in parts), default=0.0)
+
     def docks(self) -> List[Pose2]:
         """Return the poses of all docks in the world."""
         return [to_pose2(self._pose_of(name)) for name in self._docks]

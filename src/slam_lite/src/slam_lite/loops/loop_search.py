@@ -75,7 +75,9 @@ def find_loop_closure(
     if candidate.is_ambiguous or is_partial:
         pose, response = constraint.base_in_place, constraint.response
         if is_partial:
-            response /= max(seen_fraction(pose.transform_points(recent_cloud.points_xy), place_clouds), _MIN_SEEN)
+            response /= max(
+                seen_fraction(pose.transform_points(recent_cloud.points_xy), place_clouds), _MIN_SEEN
+            )
         ratio = log_likelihood_ratio(place_clouds, recent_clouds, pose, response, local_map)
         is_good = response >= settings.closure_min_response
         if not is_good or ratio < (CERTAIN_RATIO if is_partial else _MIN_RATIO):
