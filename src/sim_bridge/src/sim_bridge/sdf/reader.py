@@ -207,6 +207,15 @@ class _SdfReader:
         def warn(joint: Joint) -> None:
             self._warnings.skip(elements[joint.name[len(name) + 2 :]], "closes a loop, ignored")
 
+        children = {joint.child for joint in joints}
+        for link in model.element.children("link"):
+            decay = link.child("velocity_decay")
+            if (
+                decay is not None
+                and f"{name}::{link.name}" in children
+                and any(read_damping(link, self._step))
+            ):
+                self._warnings.skip(decay, f"{NO_EFFECT} on a link that hangs on a joint")
         placed = {body.name: body.pose_in_world for body in self._bodies}
         in_model = {f"{name}::{link}": pose for link, pose in links.items()}
         for joint in without_loops(joints, warn):
