@@ -159,6 +159,13 @@ def test_velocity_decay_refers_to_the_step_of_physics(tmp_path):
         assert world.bodies[0].damping == (pytest.approx(-math.log(0.99) / step), 0.0)
 
 
+def test_velocity_decay_of_a_link_that_hangs_on_a_joint_is_named():
+    """link.sdf: velocity_decay. Stated difference: it acts on the root of a tree of links."""
+    decay = "<velocity_decay><angular>0.1</angular></velocity_decay>"
+    (text,) = model_of(HINGE.format(COLLISION + decay, "<axis/>")).warnings
+    assert text.endswith("link 'b' > velocity_decay: has no effect on a link that hangs on a joint")
+
+
 def test_a_plane_is_infinite_and_static_whatever_its_size():
     """plane_shape.sdf: size is that of the visual."""
     body = body_of("<collision name='c'><geometry><plane><size>1 1</size></plane></geometry></collision>")

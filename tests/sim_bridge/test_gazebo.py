@@ -177,7 +177,7 @@ class TestGazebo(unittest.TestCase):
             ("<sdf", "not well-formed XML (unclosed token: line 1, column 0)"),
             (bomb, "refused, defines entities"),
             (shrunk, "box > size: must be positive, got '0.4 -1 0.4'"),
-            ("<robot name='r'/>", "its root is <robot>"),
+            ("<world/>", "its root is <world>, expected <sdf>"),
             ("<sdf version='1.6'><model name='any'/></sdf>", "has no links"),
             (unicorn, "model://unicorn not found"),
             (CENTIPEDE, "150 parts are connected by joints, at most 128 are supported"),

@@ -93,6 +93,22 @@ def test_joint_limits_stop_a_door():
     ), "it hangs, not falls"
 
 
+@pytest.mark.parametrize(("limit", "effort"), [("upper", 5.0), ("lower", -5.0)])
+def test_a_single_limit_stops_a_door(limit, effort):
+    bound = 0.6 if limit == "upper" else -0.6
+    door = link("door", "0.5 0 1 0 0 0", size="1 0.05 2")
+    hinge = "<pose>-0.5 0 0 0 0 0</pose>"
+    limits = f"<{limit}>{bound}</{limit}>"
+    scene, _ = scene_of(door, joint("revolute", "world", "door", hinge, axis="0 0 1", limits=limits))
+    scene.forces.apply_joint_effort(JointEffort("m::hinge", effort, 0.0, np.inf))
+    run(scene, 3.0)
+    assert scene.joints.state("m::hinge").position == pytest.approx(bound, abs=0.02)
+    scene.forces.clear()
+    scene.forces.apply_joint_effort(JointEffort("m::hinge", -effort, 0.0, np.inf))
+    run(scene, 3.0)
+    assert abs(scene.joints.state("m::hinge").position) > 3.0, "the other side is free"
+
+
 def test_a_drawer_slides_along_its_axis():
     scene, _ = scene_of(
         link("drawer", "0 0 1 0 0 0"),

@@ -2,12 +2,14 @@
 
 import math
 import os
+import re
 
 import numpy as np
 import pytest
 
 from sim_bridge import ROBOTS, RobotError, robot_named
 from sim_bridge.description import read_sdf_robot, read_urdf_robot
+from sim_bridge.description.bodies import bodies_of
 from sim_bridge.errors import NoDriveError
 from sim_bridge.geometry.pose3 import pose3
 from sim_bridge.sdf import load_world
@@ -141,6 +143,25 @@ def test_an_unknown_plugin_gives_one_warning():
         "ignored (and 1 more like it)",
         "mine.urdf:25: robot 'mine' > joint 'swivel': joint is fixed: only driven wheels turn",
     )
+
+
+def test_driven_wheels_have_the_friction_of_their_description():
+    grip = "<gazebo reference='left'><mu1>0.3</mu1><mu2>0.2</mu2><kp>1e6</kp></gazebo>"
+    robot = read_urdf_robot(urdf(DRIVE.format(more=""), grip), "mine.urdf")
+    wheels = robot.model.wheels
+    assert (wheels["left_hinge"].friction, wheels["right_hinge"].friction) == (0.2, 1.0)
+    surfaces = {body.name: body.surface.friction for body in bodies_of(robot.model, "r")[0]}
+    assert surfaces == {"r::chassis": 0.0, "r::left": 0.2, "r::right": 1.0}
+    assert len(robot.warnings) == 1, "the swivel joint alone"
+
+
+def test_what_has_no_effect_in_a_description_is_named_with_its_line():
+    grip = "\n<gazebo reference='chassis'>\n<mu1>0.3</mu1></gazebo>\n<sensors>2</sensors>"
+    more = "<wheelSlip>1</wheelSlip>"
+    warnings = read_urdf_robot(urdf(DRIVE.format(more=more), grip), "mine.urdf").warnings
+    for place in ("gazebo > plugin 'd' > wheelSlip", "gazebo > mu1", "robot 'mine' > sensors"):
+        (line,) = [text for text in warnings if f"{place}: has no effect" in text]
+        assert re.match(r"mine.urdf:\d+: robot 'mine'", line)
 
 
 def test_a_robot_without_a_drive_is_refused_naming_its_file(tmp_path):

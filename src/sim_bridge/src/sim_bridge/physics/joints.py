@@ -9,6 +9,8 @@ from sim_bridge.physics.registry import BodyRegistry, BulletJoint
 
 # Force with which Bullet keeps a joint within its limits [N m or N].
 LIMIT_FORCE = 1e4
+# Position that stands for an infinite limit beside a finite one [rad or m].
+FAR = 1e9
 
 
 class JointState(NamedTuple):
@@ -112,7 +114,7 @@ class Motors:
 
 
 def limit_joint(bullet: BulletClient, body_id: int, link_index: int, lower: float, upper: float) -> None:
-    """Set the limits of a joint; with an infinite one it stays unlimited.
+    """Set the limits of a joint, of which one or both may be infinite.
 
     Args:
         bullet: The physics engine.
@@ -121,7 +123,11 @@ def limit_joint(bullet: BulletClient, body_id: int, link_index: int, lower: floa
         lower: Lower limit [rad or m].
         upper: Upper limit [rad or m].
     """
-    if upper - lower < np.inf:
+    if min(-lower, upper) < np.inf:
         bullet.changeDynamics(
-            body_id, link_index, jointLowerLimit=lower, jointUpperLimit=upper, jointLimitForce=LIMIT_FORCE
+            body_id,
+            link_index,
+            jointLowerLimit=max(lower, -FAR),
+            jointUpperLimit=min(upper, FAR),
+            jointLimitForce=LIMIT_FORCE,
         )

@@ -209,6 +209,7 @@ class _SdfReader:
         def warn(joint: Joint) -> None:
             self._warnings.skip(elements[joint.name[len(name) + 2 :]], "closes a loop, ignored")
 
+        _skip_decay(model, name, joints, self._warnings)
         placed = {body.name: body.pose_in_world for body in self._bodies}
         in_model = {f"{name}::{link}": pose for link, pose in links.items()}
         for joint in without_loops(joints, warn):
@@ -310,6 +311,15 @@ def _physics(world: Element, warnings: SkippedElements) -> Tuple[float, float]:
     if x or y:
         warnings.skip(gravity, "only its z acts")
     return z, step
+
+
+def _skip_decay(model: SdfModel, name: str, joints: Sequence[Joint], warnings: SkippedElements) -> None:
+    """Warn about <velocity_decay> of links that hang on joints, of a model with a full name."""
+    children = {joint.child for joint in joints}
+    for link in model.element.children("link"):
+        decay = link.child("velocity_decay")
+        if decay is not None and f"{name}::{link.name}" in children and any(read_damping(link, GAZEBO_STEP)):
+            warnings.skip(decay, f"{NO_EFFECT} on a link that hangs on a joint")
 
 
 def _links_of(model: SdfModel, scope: str = "") -> List[Tuple[str, np.ndarray]]:
