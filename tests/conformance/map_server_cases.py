@@ -203,7 +203,6 @@ IMAGES = [
     image("keys_of_other_programs_are_ignored", MAIN, pgm(), TRINARY, image_size="[4, 1]"),
 ]
 
-QUOTED = "the text says which file, line and key is wrong"
 SERVER = [
     server("the_map_is_published_latched", MAIN, "map.data", TRINARY),
     server("the_frame_is_map", WIKI, "map.frame", "map"),
@@ -249,7 +248,7 @@ SERVER = [
         "changes.0.1",
         [0, 0],
         [],
-        "the service's definition says that the map is only valid on success; the official answer has none",
+        "by the service's definition the map is only valid on success; the official answer has none",
         changes=["FOLDER/other.yaml"],
         files={"other.yaml": list(description(image="other.pgm").encode()), "other.pgm": pgm((254, 254))},
     ),
@@ -312,7 +311,7 @@ SERVER = [
     ),
 ]
 
-HALF_TURN, NO_TURN = [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]
+HALF_TURN = [0.0, 0.0, 1.0, 0.0]
 SAVED = (
     "image: map.pgm\nresolution: 0.500000\norigin: [-1.000000, 2.000000, 0.000000]\n"
     "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n\n"
