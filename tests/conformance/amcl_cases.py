@@ -8,7 +8,8 @@ import math
 from typing import Any, Dict, List
 
 import numpy as np
-from case import SAME, Case
+from amcl_rig import run_official, run_ours
+from case import SAME, Case, Rig
 
 from planar import Pose2
 
@@ -326,3 +327,4 @@ MOVES = [
 ]
 
 CASES = [parameter(name) for name in PARAMETERS] + STANDS + MOVES
+RIGS = {"amcl": Rig(run_ours, run_official, ("amcl/amcl",))}

@@ -8,7 +8,8 @@ import io
 from typing import Any, List, Sequence
 
 import numpy as np
-from case import SAME, Case
+from case import SAME, Case, Rig
+from map_server_rig import run_official, run_ours
 from PIL import Image
 
 LOADER, MAIN, SAVER = (
@@ -367,3 +368,4 @@ SAVER_CASES = [
 ]
 
 CASES = IMAGES + SERVER + SAVER_CASES
+RIGS = {"map_server": Rig(run_ours, run_official, ("map_server/map_server", "map_server/map_saver"))}
