@@ -137,10 +137,10 @@ IMAGES = [
     image(
         "a_pgm_of_16_bits_is_scaled",
         LOADER,
-        pgm([byte for shade in SHADES for byte in (shade, shade)], 65535)[:-8]
-        + [byte for shade in SHADES for byte in (shade, shade)],
+        list(b"P5\n4 1\n65535\n" + DEEP.astype(">u2").tobytes()),
+        TRINARY,
         "refused",
-        "refused",
+        "its shades are known as well as those of a PNG",
     ),
     image("a_pgm_up_to_254_is_scaled_rounding_down", LOADER, pgm(maximum=254), TRINARY),
     image("an_ascii_pgm_up_to_15_is_scaled", LOADER, pgm((0, 8, 15), 15, magic="P2"), [100, -1, 0]),
