@@ -8,7 +8,8 @@ import math
 from typing import Any, Dict, List
 
 import numpy as np
-from case import SAME, Case
+from amcl_rig import run_official, run_ours
+from case import SAME, Case, Rig
 
 from planar import Pose2
 
@@ -170,11 +171,11 @@ STANDS = [
     run("the_pose_is_saved_when_the_node_is_interrupted", "values.saved_initial_pose_a is known", True),
     run("an_interrupted_node_exits_with_0", "exit_code", 0),
     run(
-        "a_pose_is_not_saved_while_it_is_lost",
+        "the_pose_in_a_replaced_map_is_not_saved",
         "values.saved_initial_cov_xx < 1.0",
         True,
         False,
-        "the next run would start from a pose that is known to be wrong",
+        "the last pose is one in the map before set_map",
     ),
 ]
 
@@ -326,3 +327,4 @@ MOVES = [
 ]
 
 CASES = [parameter(name) for name in PARAMETERS] + STANDS + MOVES
+RIGS = {"amcl": Rig(run_ours, run_official, ("amcl/amcl",))}

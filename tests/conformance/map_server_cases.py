@@ -8,7 +8,8 @@ import io
 from typing import Any, List, Sequence
 
 import numpy as np
-from case import SAME, Case
+from case import SAME, Case, Rig
+from map_server_rig import run_official, run_ours
 from PIL import Image
 
 LOADER, MAIN, SAVER = (
@@ -136,10 +137,10 @@ IMAGES = [
     image(
         "a_pgm_of_16_bits_is_scaled",
         LOADER,
-        pgm([byte for shade in SHADES for byte in (shade, shade)], 65535)[:-8]
-        + [byte for shade in SHADES for byte in (shade, shade)],
+        list(b"P5\n4 1\n65535\n" + DEEP.astype(">u2").tobytes()),
+        TRINARY,
         "refused",
-        "refused",
+        "its shades are known as well as those of a PNG",
     ),
     image("a_pgm_up_to_254_is_scaled_rounding_down", LOADER, pgm(maximum=254), TRINARY),
     image("an_ascii_pgm_up_to_15_is_scaled", LOADER, pgm((0, 8, 15), 15, magic="P2"), [100, -1, 0]),
@@ -203,7 +204,6 @@ IMAGES = [
     image("keys_of_other_programs_are_ignored", MAIN, pgm(), TRINARY, image_size="[4, 1]"),
 ]
 
-QUOTED = "the text says which file, line and key is wrong"
 SERVER = [
     server("the_map_is_published_latched", MAIN, "map.data", TRINARY),
     server("the_frame_is_map", WIKI, "map.frame", "map"),
@@ -249,7 +249,7 @@ SERVER = [
         "changes.0.1",
         [0, 0],
         [],
-        "the service's definition says that the map is only valid on success; the official answer has none",
+        "by the service's definition the map is only valid on success; the official answer has none",
         changes=["FOLDER/other.yaml"],
         files={"other.yaml": list(description(image="other.pgm").encode()), "other.pgm": pgm((254, 254))},
     ),
@@ -312,7 +312,7 @@ SERVER = [
     ),
 ]
 
-HALF_TURN, NO_TURN = [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]
+HALF_TURN = [0.0, 0.0, 1.0, 0.0]
 SAVED = (
     "image: map.pgm\nresolution: 0.500000\norigin: [-1.000000, 2.000000, 0.000000]\n"
     "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n\n"
@@ -368,3 +368,4 @@ SAVER_CASES = [
 ]
 
 CASES = IMAGES + SERVER + SAVER_CASES
+RIGS = {"map_server": Rig(run_ours, run_official, ("map_server/map_server", "map_server/map_saver"))}

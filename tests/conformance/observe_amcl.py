@@ -23,7 +23,7 @@ from simple_robot import SimpleRobot, room  # noqa: E402
 
 START = Pose2(1.2, 1.5, 0.0)
 # Longest time for the answer to a scan, and time after its transform for its other messages [s].
-ANSWER, REST = 1.5, 0.25
+ANSWER, REST = 3.0, 0.25
 
 
 class Observer:

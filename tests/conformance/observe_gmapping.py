@@ -80,7 +80,7 @@ class Observer:
         self.values["tf_frames"] = frames[-1] if frames else None
         self.values["tf_is_identity"] = all(pose == Pose2() for pose in poses) if poses else None
         if delays:
-            self.values["tf_delay"] = float(np.median(delays))
+            self.values["tf_delay"] = max(delays)  # that of the message with the least latency
             stamps = [each.header.stamp.to_sec() for _, each in self.transforms]
             self.values["tf_period"] = float(np.median(np.diff(stamps)))
         self.values["has_map_before"] = bool(self.maps)

@@ -62,6 +62,8 @@ class Robot:
         self._scans.publish(sweep(grid, self.base_in_map, stamp, "laser", beams, self._upside_down))
 
     def publish(self, scan):
+        """Publish a scan of the laser, with its mounting."""
+        self._tf.publish(TFMessage([transform_msg(Pose2(), "base_link", "laser", scan.header.stamp)]))
         self._scans.publish(scan)
 
     @property

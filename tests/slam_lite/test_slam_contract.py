@@ -154,6 +154,7 @@ class SlamContractTest(unittest.TestCase):
 
     def test_a_scan_with_nan_angles_is_skipped_and_mapping_continues(self):
         stamp = rospy.Time.now()
+        self.transforms.send(Pose2(), "base_link", "laser", stamp)
         self.transforms.send(circle(0.0), "odom", "base_link", stamp)
         scan = sweep(self.truth, circle(0.0), stamp, "laser")
         scan.angle_increment = math.nan

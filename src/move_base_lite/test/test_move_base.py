@@ -8,6 +8,7 @@ from robot_in_picture import PERIOD, SETTINGS, Robot, room
 
 from move_base_lite import MoveBase, PoseHistory, Status
 from move_base_lite.costmap import LETHAL
+from move_base_lite.move_base import Measurement
 from planar import OCCUPIED, Pose2, Twist2
 
 START, GOAL = Pose2(1.0, 2.0), Pose2(4.0, 2.0)
@@ -157,3 +158,16 @@ def test_a_map_whose_origin_is_turned_is_driven_in(corner):
     statuses = [result.decision.status for result in drive.run(20.0)]
     assert Status.SUCCEEDED in statuses
     assert drive.robot.pose.distance_to(corner @ GOAL) < 0.2
+
+
+def test_a_cloud_of_a_mounted_camera_is_placed_without_ros():
+    drive = Drive()
+    drive.poses.set_mounting("camera", Pose2(0.2, 0.0, 1.0).as_matrix())
+    drive.tick()
+    points_xyz = np.array([[1.0, 0.0, 0.3]])
+    drive.move_base.inputs.add(Measurement("cloud", 0.0, lambda: points_xyz, "camera"))
+    drive.move_base.inputs.check_new(Twist2())
+    state = drive.move_base.inputs.state(0.0)
+    (observation,) = (each for each in drive.move_base.inputs.observations(state) if each.topic == "cloud")
+    assert (observation.sensor_in_base.x, observation.angles[0]) == pytest.approx((0.2, 1.0))
+    assert (observation.ranges[0], observation.heights[0]) == pytest.approx((1.0, 0.3))

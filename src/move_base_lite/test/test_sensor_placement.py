@@ -129,7 +129,7 @@ def assert_marks(robot, *points_xy):
 
 @pytest.mark.parametrize("sensor_frame", ["", "base_footprint"])
 def test_data_of_a_laser_keep_the_frame_of_their_header(sensor_frame):
-    """A laser that looks backwards sees a thing 0.9 m behind, not 0.68 m ahead."""
+    """A laser that looks backwards sees an obstacle 0.9 m behind, not 0.68 m ahead."""
     robot = Robot(sensor_frame=sensor_frame)
     robot.poses.frames = {
         "laser": lambda stamp: pose(x=-0.11, z=0.2, yaw=math.pi),
@@ -150,7 +150,7 @@ def test_a_cloud_in_the_frame_of_the_base_is_not_moved_by_the_mounting_of_its_ca
 
 
 def test_rays_begin_at_the_sensor_frame():
-    """What lies between the header's frame and the thing is cleared only along rays from ``sensor_frame``."""
+    """Cells are cleared along rays from ``sensor_frame``, not along those from the frame of the header."""
     robot = Robot("PointCloud2", sensor_frame="mast")
     robot.poses.frames = {"base_footprint": lambda stamp: np.eye(4), "mast": lambda stamp: pose(y=1.0)}
     robot.tick(("base_footprint", 0.0, np.array([[1.0, 0.0, 0.2], [1.0, 0.5, 0.2]])))
