@@ -99,11 +99,11 @@ class _Sensor:
             upside_down = bool(sensor_in_base[2, 2] < 0.0)
             scan = scan_from_msg(message, Pose2(float(x), float(y), yaw), upside_down)
             return observation_from_scan(self._source.topic, scan, float(height))
-        points = points_of(message) @ sensor_in_base[:3, :3].T + sensor_in_base[:3, 3]
         return observation_from_points(
             self._source.topic,
             message.header.stamp.to_sec(),
             Pose2(float(x), float(y)),
-            points,
+            points_of(message),
             float(height),
+            sensor_in_base,
         )
