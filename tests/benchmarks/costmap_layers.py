@@ -2,8 +2,8 @@
 """Measures CPU time and memory of move_base with three obstacle layers, beside the official node.
 
 Both nodes get the same messages at the same time: a scan of 360 beams at 10 Hz and two clouds of 20,000
-points at 5 Hz. The local costmap is 4 x 4 m with cells of 0.05 m, at 5 Hz. There is no goal. The official
-move_base is measured if it is installed.
+points of depth cameras at 5 Hz. The local costmap is 4 x 4 m with cells of 0.05 m, at 5 Hz. There is no
+goal. The official move_base is measured if it is installed.
 
 python3 tests/benchmarks/costmap_layers.py [--seconds N] [--layers N] [--silent] [--json FILE]
 """
@@ -87,10 +87,10 @@ class Sensors:
 
     def __init__(self, is_silent: bool):
         rng = np.random.default_rng(0)
-        points = np.column_stack(
-            (rng.uniform(0.5, 2.4, POINTS), rng.uniform(-1.5, 1.5, POINTS), rng.uniform(0.05, 1.8, POINTS))
-        )
-        self._clouds = [create_cloud_xyz32(Header(frame_id="base_link"), points[::step]) for step in (1, -1)]
+        self._clouds = [
+            create_cloud_xyz32(Header(frame_id="base_link"), _camera_points(rng, heading))
+            for heading in (0.0, np.pi)
+        ]
         self._scan = numpy_msg(LaserScan)(range_min=0.1, range_max=10.0)
         self._scan.header.frame_id = "base_link"
         self._scan.angle_min, self._scan.angle_increment = -np.pi, 2.0 * np.pi / BEAMS
@@ -132,6 +132,13 @@ class Sensors:
         odometry.header.stamp, odometry.header.frame_id = now, "odom"
         odometry.pose.pose.orientation.w = 1.0
         self._odometry.publish(odometry)
+
+
+def _camera_points(rng: np.random.Generator, heading: float) -> np.ndarray:
+    """Points (N, 3) as a depth camera of 60 degrees sees them, between 0.5 and 5 m away."""
+    angles, ranges = heading + rng.uniform(-0.52, 0.52, POINTS), rng.uniform(0.5, 5.0, POINTS)
+    heights = rng.uniform(0.05, 1.8, POINTS)
+    return np.column_stack((ranges * np.cos(angles), ranges * np.sin(angles), heights))
 
 
 def official_node() -> Optional[List[str]]:

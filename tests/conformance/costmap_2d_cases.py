@@ -487,7 +487,7 @@ OBSTACLE_LAYER: List[Case] = [
         steps=[[("marks", AT_AHEAD)], [("cloud", [[2.4, 0.0, 0.2]])]],
     ),
     statement(
-        "a_source_marks_what_it_saw_last_until_it_sees_anew",
+        "a_source_marks_what_it_saw_last_until_it_sees_something_else",
         "src/observation_buffer.cpp: the newest observation is kept",
         costmap(
             (

@@ -1,4 +1,4 @@
-"""The official costmap_2d_node on the cases of costmap_2d_rig; each case gets a node of its own."""
+"""The official costmap_2d_node on the cases of costmap_2d_rig; one node for each case."""
 
 import atexit
 import os
@@ -28,6 +28,7 @@ from planar_ros.messages.conversion import OccupancyGridArrays, grid_to_msg, pos
 
 NODE = "costmap_node"
 START_SECONDS, STEP_SECONDS = 15.0, 0.6
+_joined: List[bool] = []
 
 
 def find_executable(package: str, name: str) -> Optional[Path]:
@@ -67,8 +68,9 @@ def end(process: subprocess.Popen) -> None:
 
 def join_master() -> None:
     """Start a master and make this process a node of it, once."""
-    if rospy.core.is_initialized():
+    if _joined:
         return
+    _joined.append(True)
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]

@@ -194,7 +194,7 @@ PARAMETERS += [
         (0.2, 0.0, 10.0),
     ),
     Case(
-        "each_layer_has_a_server_of_its_own",
+        "each_layer_has_its_own_server",
         "costmap_2d/plugins/obstacle_layer.cpp: setupDynamicReconfigure",
         "parameters",
         {

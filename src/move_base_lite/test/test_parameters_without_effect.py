@@ -51,8 +51,7 @@ def named(parameters):
         ),
         (
             {"local_costmap": {"plugins": [*LAYERS, *LAYERS]}},
-            "local_costmap/plugins: the second entry obstacles has no effect: "
-            "each layer needs a name of its own",
+            "local_costmap/plugins: the second entry obstacles has no effect: names of layers must differ",
         ),
         (
             {"TebLocalPlannerROS": {"max_vel_x": 0.4}},

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from move_base_lite.costmap import MapSource
+from move_base_lite.costmap import StaticMapSource
 from move_base_lite.ros.sensing import static_maps
 from planar import Pose2
 from planar_ros.messages.validation import MessageError
@@ -48,7 +48,7 @@ def subscribed(*sources, transforms=None):
 
 
 def test_each_source_has_the_latest_map_of_its_topic(topics):
-    real, virtual = MapSource("map"), MapSource("walls")
+    real, virtual = StaticMapSource("map"), StaticMapSource("walls")
     maps = subscribed(real, virtual)
     topics.publish("map", map_message(0))
     topics.publish("map", map_message(100))
@@ -60,7 +60,7 @@ def test_each_source_has_the_latest_map_of_its_topic(topics):
 
 
 def test_with_first_map_only_later_maps_are_ignored(topics):
-    first, latest = MapSource("map", first_map_only=True), MapSource("map")
+    first, latest = StaticMapSource("map", first_map_only=True), StaticMapSource("map")
     maps = subscribed(first, latest)
     topics.publish("map", map_message(0))
     topics.publish("map", map_message(100))
@@ -69,7 +69,7 @@ def test_with_first_map_only_later_maps_are_ignored(topics):
 
 
 def test_updates_change_a_block_of_the_map_of_those_that_subscribe(topics):
-    with_updates, without = MapSource("map", with_updates=True), MapSource("map")
+    with_updates, without = StaticMapSource("map", with_updates=True), StaticMapSource("map")
     maps = subscribed(with_updates, without)
     topics.publish("map_updates", update(0, 0, 1, 1, 100))  # before the map: nothing to change
     topics.publish("map", map_message(0))
@@ -81,7 +81,7 @@ def test_updates_change_a_block_of_the_map_of_those_that_subscribe(topics):
 
 @pytest.mark.parametrize("block", [update(2, 0, 2, 1, 0), update(-1, 0, 1, 1, 0), update(0, 1, 1, 2, 0)])
 def test_an_update_outside_the_map_is_refused(topics, block):
-    maps = subscribed(MapSource("map", with_updates=True))
+    maps = subscribed(StaticMapSource("map", with_updates=True))
     topics.publish("map", map_message(0))
     with pytest.raises(MessageError, match="an update must lie within the map of 3 x 2 cells"):
         topics.publish("map_updates", block)
@@ -91,7 +91,7 @@ def test_an_update_outside_the_map_is_refused(topics, block):
 def test_a_map_in_another_frame_waits_for_its_transform_and_is_moved(topics, monkeypatch):
     monkeypatch.setattr(static_maps.rospy, "logwarn_throttle", lambda *text: None)
     poses = {}
-    source = MapSource("walls")
+    source = StaticMapSource("walls")
     lookup = SimpleNamespace(lookup=lambda target, frame: poses.get((target, frame)))
     maps = subscribed(source, transforms=lookup)
     topics.publish("walls", map_message(100, "building"))

@@ -60,17 +60,3 @@ def test_rays_follow_the_origin_of_the_grid():
     grid = grid_from_picture(ROOM, resolution=1.0, origin=origin)
     ranges = cast_rays(grid, origin @ Pose2(3.5, 2.5, 0.0), np.array([0.0]), 10.0)
     assert ranges == pytest.approx([2.5])
-
-
-def test_a_turned_grid_has_the_same_values_along_the_axes_of_the_map():
-    turned = grid_from_picture("###\n#..", resolution=0.5, origin=Pose2(2.0, 1.0, math.pi / 2))
-    aligned = turned.axis_aligned()
-    assert aligned.origin == Pose2(pytest.approx(1.0), 1.0, 0.0)
-    assert aligned.cells.tolist() == grid_from_picture("#.\n#.\n##").cells.tolist()
-    slanted = grid_from_picture("#####\n#...#\n#####", resolution=0.1, origin=Pose2(1.0, 2.0, 0.7))
-    points_xy = slanted.points_of(np.argwhere(slanted.cells >= 0))
-    assert slanted.axis_aligned().contains(slanted.axis_aligned().cells_of(points_xy)).all()
-    same = [slanted.axis_aligned().value_at(*slanted.points_of(np.array([[1, col]]))[0]) for col in (1, 2, 3)]
-    assert FREE in same
-    assert slanted.axis_aligned().value_at(0.9, 2.0) == UNKNOWN
-    assert turned.axis_aligned().axis_aligned().cells.tolist() == aligned.cells.tolist()

@@ -16,7 +16,7 @@ from move_base_lite.costmap.observation import (
 from move_base_lite.costmap.polygon import Polygon
 from move_base_lite.costmap.registry import LAYERS
 from move_base_lite.costmap.settings import CostmapSettings, NamedLayer, named_layers
-from move_base_lite.costmap.static_maps import Maps, MapSource, StaticMap, StaticMaps
+from move_base_lite.costmap.static_maps import Maps, StaticMap, StaticMaps, StaticMapSource
 from move_base_lite.costmap.window import CellBounds, CostmapWindow
 from planar.deprecation import deprecated_names
 
@@ -35,7 +35,7 @@ __all__ = [
     "LayerContext",
     "LayerSettings",
     "LayeredCostmap",
-    "MapSource",
+    "StaticMapSource",
     "Maps",
     "NamedLayer",
     "Observation",

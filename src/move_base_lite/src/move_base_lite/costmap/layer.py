@@ -24,7 +24,7 @@ import numpy as np
 
 from move_base_lite.costmap.footprint import Footprint
 from move_base_lite.costmap.observation import Observation
-from move_base_lite.costmap.static_maps import MapSource, StaticMap, StaticMaps
+from move_base_lite.costmap.static_maps import StaticMap, StaticMaps, StaticMapSource
 from move_base_lite.costmap.window import NO_CELLS, CellBounds, CostmapWindow
 from move_base_lite.errors import NavigationError, PluginFailed
 from planar import OccupancyGrid, Pose2
@@ -60,7 +60,7 @@ class LayerContext:
     maps: StaticMaps = StaticMaps()
     global_frame: str = ""
 
-    def find_map(self, source: MapSource) -> Optional[StaticMap]:
+    def find_map(self, source: StaticMapSource) -> Optional[StaticMap]:
         """Return the map of a source; without one that of ``grid``, if there is one."""
         return self.maps.find(source) or StaticMaps.of(self.grid).find(source)
 

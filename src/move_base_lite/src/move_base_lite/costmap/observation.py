@@ -79,7 +79,12 @@ def observation_from_scan(topic: str, scan: Scan, height: float = 0.0) -> Observ
 
 
 def observation_from_points(
-    topic: str, stamp: float, sensor_in_base: Pose2, points_xyz: np.ndarray, sensor_height: float = 0.0
+    topic: str,
+    stamp: float,
+    sensor_in_base: Pose2,
+    points_xyz: np.ndarray,
+    sensor_height: float = 0.0,
+    frame_in_base: np.ndarray = np.eye(4),
 ) -> Observation:
     """Convert a point cloud to a costmap observation.
 
@@ -87,13 +92,15 @@ def observation_from_points(
         topic: Topic of the cloud.
         stamp: Time of the measurement [s].
         sensor_in_base: Sensor in the base frame.
-        points_xyz: (N, 3) points in the base frame, z above the floor [m]; points that are not finite are
-            dropped.
+        points_xyz: (N, 3) points [m]; points that are not finite are dropped.
         sensor_height: Height of the sensor above the floor [m].
+        frame_in_base: Pose in the base frame, z above the floor, of the frame of the points (4, 4).
     """
     base_in_sensor = sensor_in_base.inverse()
     placement = base_in_sensor.x, base_in_sensor.y, base_in_sensor.yaw
-    directions_xy, ranges, heights = _rays(np.asarray(points_xyz, dtype=np.float64), placement)
+    points_xyz = np.ascontiguousarray(points_xyz, dtype=np.float64)
+    frame = np.ascontiguousarray(frame_in_base, dtype=np.float64)
+    directions_xy, ranges, heights = _rays(points_xyz, frame, placement)
     return Observation(
         topic,
         stamp,
@@ -107,20 +114,27 @@ def observation_from_points(
 
 
 @numba.njit(cache=True)
-def _rays(points_xyz, placement):
-    """Directions, lengths and end heights of the rays to the finite points, in the plane of the sensor."""
+def _rays(points_xyz, frame, placement):
+    """Directions, lengths and end heights of the rays to the finite points, in the plane of the sensor.
+
+    ``frame``: pose of the points' frame in the base frame; ``placement``: that of the base at the sensor.
+    """
     x, y, yaw = placement
     c, s = math.cos(yaw), math.sin(yaw)
     directions = np.empty((points_xyz.shape[0], 2))
     ranges, heights = np.empty(points_xyz.shape[0]), np.empty(points_xyz.shape[0])
     count = 0
     for i in range(points_xyz.shape[0]):
-        dx = x + c * points_xyz[i, 0] - s * points_xyz[i, 1]
-        dy = y + s * points_xyz[i, 0] + c * points_xyz[i, 1]
+        px, py, pz = points_xyz[i, 0], points_xyz[i, 1], points_xyz[i, 2]
+        in_base_x = frame[0, 0] * px + frame[0, 1] * py + frame[0, 2] * pz + frame[0, 3]
+        in_base_y = frame[1, 0] * px + frame[1, 1] * py + frame[1, 2] * pz + frame[1, 3]
+        height = frame[2, 0] * px + frame[2, 1] * py + frame[2, 2] * pz + frame[2, 3]
+        dx = x + c * in_base_x - s * in_base_y
+        dy = y + s * in_base_x + c * in_base_y
         length = math.sqrt(dx * dx + dy * dy)
-        if not (math.isfinite(length) and math.isfinite(points_xyz[i, 2])):
+        if not (math.isfinite(length) and math.isfinite(height)):
             continue
-        ranges[count], heights[count] = length, points_xyz[i, 2]
+        ranges[count], heights[count] = length, height
         directions[count, 0] = dx / length if length > 0.0 else 1.0
         directions[count, 1] = dy / length if length > 0.0 else 0.0
         count += 1

@@ -11,18 +11,15 @@ class StaticMap:
     """A map and the frame it lies in.
 
     Attributes:
-        grid: The map; one whose origin is turned is resampled along the axes of the frame.
+        grid: The map.
         frame: Frame of its coordinates; empty: the frame of the global costmap.
     """
 
     grid: OccupancyGrid
     frame: str = ""
 
-    def __post_init__(self):
-        object.__setattr__(self, "grid", self.grid.axis_aligned())
 
-
-class MapSource(NamedTuple):
+class StaticMapSource(NamedTuple):
     """Where a static layer has its map from; layers with equal sources share a map.
 
     Attributes:
@@ -44,7 +41,9 @@ class StaticMaps:
         default: Map of every other source, as without ROS, where there is one map.
     """
 
-    def __init__(self, by_source: Mapping[MapSource, StaticMap] = {}, default: Optional[StaticMap] = None):
+    def __init__(
+        self, by_source: Mapping[StaticMapSource, StaticMap] = {}, default: Optional[StaticMap] = None
+    ):
         self._by_source, self._default = dict(by_source), default
 
     @classmethod
@@ -54,11 +53,11 @@ class StaticMaps:
             return given
         return cls(default=None if given is None else StaticMap(given))
 
-    def find(self, source: MapSource) -> Optional[StaticMap]:
+    def find(self, source: StaticMapSource) -> Optional[StaticMap]:
         """Return the map of a source; None if there is none yet."""
         return self._by_source.get(source, self._default)
 
-    def with_map(self, source: MapSource, static_map: StaticMap) -> "StaticMaps":
+    def with_map(self, source: StaticMapSource, static_map: StaticMap) -> "StaticMaps":
         """Return these maps with another one of a source."""
         return StaticMaps({**self._by_source, source: static_map}, self._default)
 

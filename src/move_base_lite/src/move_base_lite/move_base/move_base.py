@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Callable, FrozenSet, Optional, Sequence
 
 from move_base_lite.config import NavigatorSettings
-from move_base_lite.costmap import Maps, MapSource, StaticMap, StaticMaps
+from move_base_lite.costmap import Maps, StaticMap, StaticMaps, StaticMapSource
 from move_base_lite.errors import NavigationError, RobotLost
 from move_base_lite.move_base.observation_buffer import Measurement
 from move_base_lite.move_base.robot_poses import RobotPoses
@@ -140,7 +140,7 @@ class MoveBase:
         return Decision(Status.ABORTED, Twist2(), text, outcome=GoalOutcome(error.outcome, error.code, text))
 
     @property
-    def map_sources(self) -> FrozenSet[MapSource]:
+    def map_sources(self) -> FrozenSet[StaticMapSource]:
         """Where the static layers of both costmaps have their maps from."""
         costmaps = self._settings.global_costmap, self._settings.local_costmap
         return frozenset(layer.source for costmap in costmaps for layer in costmap.static_layers)
@@ -158,7 +158,7 @@ class MoveBase:
         """
         self._set_maps(StaticMaps.of(grid))
 
-    def set_layer_map(self, source: MapSource, static_map: StaticMap) -> None:
+    def set_layer_map(self, source: StaticMapSource, static_map: StaticMap) -> None:
         """Set or replace the map of the static layers with one source (see set_map).
 
         Args:

@@ -55,9 +55,8 @@ class SensorPlacement:
         frame = self._above_floor(self.frame_in_base)
         origin = frame if self.origin_in_base is None else self._above_floor(self.origin_in_base)
         if not isinstance(data, Scan):
-            points_xyz = data @ frame[:3, :3].T + frame[:3, 3]
             x, y, height = map(float, origin[:3, 3])
-            return observation_from_points(topic, stamp, Pose2(x, y), points_xyz, height)
+            return observation_from_points(topic, stamp, Pose2(x, y), data, height, frame)
         if self.origin_in_base is None and self.is_level:
             scan = replace(data, laser_in_base=_planar(frame), upside_down=bool(frame[2, 2] < 0.0))
             return observation_from_scan(topic, scan, float(frame[2, 3]))

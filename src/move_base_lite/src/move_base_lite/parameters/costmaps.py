@@ -165,7 +165,7 @@ def layer_plugins(reader: ParameterReader, values: Tree, name: str) -> List[Tupl
             )
         elif plugin["name"] in layers:
             entry = f"{reader.where}{name}/plugins: the second entry {plugin['name']}"
-            reader.without_effect.add(entry, "each layer needs a name of its own")
+            reader.without_effect.add(entry, "names of layers must differ")
         else:
             layers[plugin["name"]] = kind
     return [*layers.items()]

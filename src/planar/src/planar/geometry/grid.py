@@ -74,30 +74,6 @@ class OccupancyGrid:
         row, col = np.atleast_2d(row_col).T
         return (row >= 0) & (row < self.rows) & (col >= 0) & (col < self.cols)
 
-    def axis_aligned(self) -> "OccupancyGrid":
-        """Return the grid with its axes along those of the map.
-
-        Returns:
-            This grid if its origin has no yaw; otherwise one that contains it, with the values at the centres
-            of its cells, which have the same size, and UNKNOWN around it.
-        """
-        if self.origin.yaw == 0.0:
-            return self
-        corners_xy = self.origin.transform_points(
-            np.array([[0, 0], [0, self.rows], [self.cols, 0], [self.cols, self.rows]]) * self.resolution
-        )
-        lower_xy = corners_xy.min(axis=0)
-        cols, rows = np.ceil((corners_xy.max(axis=0) - lower_xy) / self.resolution - 1e-6).astype(int)
-        aligned = np.full((rows, cols), UNKNOWN, dtype=np.int8)
-        origin = Pose2(float(lower_xy[0]), float(lower_xy[1]))
-        for row in range(rows):  # one at a time, since large maps have many millions of cells
-            row_col = np.column_stack((np.full(cols, row), np.arange(cols)))
-            points_xy = origin.transform_points((row_col[:, ::-1] + 0.5) * self.resolution)
-            cells = self.cells_of(points_xy)
-            inside = self.contains(cells)
-            aligned[row, inside] = self.cells[cells[inside, 0], cells[inside, 1]]
-        return OccupancyGrid(aligned, self.resolution, origin)
-
     def value_at(self, x: float, y: float) -> int:
         """Return the value of the cell at a map point; UNKNOWN outside the grid."""
         cell = self.cells_of(np.array([[x, y]]))

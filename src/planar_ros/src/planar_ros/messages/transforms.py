@@ -16,6 +16,9 @@ from planar_ros.messages.validation import WARN_SECONDS, MessageError, is_stamp
 # Time has jumped back (a looped bag, a reset) if a stamp is older than the one before by this much [s].
 JUMP_BACK_SECONDS = 1.0
 
+# Time that stands for the latest transform.
+LATEST = rospy.Time(0)
+
 
 class TransformFilter:
     """Adds valid transforms to a tf2 buffer and clears it when time has jumped back.
@@ -193,8 +196,9 @@ class Transforms:
         if stamp is not None and not is_stamp(stamp):
             return None
         try:
-            return self.buffer.lookup_transform(
-                frame_name(target), frame_name(source), stamp or rospy.Time(0)
+            # lookup_transform would first ask whether the transform is known.
+            return self.buffer.lookup_transform_core(
+                frame_name(target), frame_name(source), stamp or LATEST
             ).transform
         except tf2_ros.TransformException:
             return None

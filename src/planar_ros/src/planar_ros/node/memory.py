@@ -2,7 +2,7 @@
 
 import ctypes
 from pathlib import Path
-from typing import Iterator, Tuple
+from typing import Iterator, Optional, Tuple
 
 # LLVM, through which numba compiles and loads kernels.
 COMPILER = "libllvmlite"
@@ -30,15 +30,20 @@ def release_compiler() -> int:
 
 
 def _unchanged_mappings(smaps: str) -> Iterator[Tuple[int, int]]:
-    """Start and size of the compiler's read-only mappings without changed pages (proc(5), smaps)."""
-    start = size = 0
-    for line in smaps.splitlines():
+    """Start and size of the compiler's read-only mappings that have no page but those of its file.
+
+    Relocated pages are anonymous copies, in memory or swapped (proc(5), smaps); after a fork they are shared,
+    so that the numbers of dirty pages do not show them.
+    """
+    mapping: Optional[Tuple[int, int]] = None
+    copies = 0
+    for line in [*smaps.splitlines(), "0-0 end"]:
         words = line.split()
-        if "-" in words[0] and not words[0].endswith(":"):
+        if not words[0].endswith(":"):
+            if mapping is not None and copies == 0:
+                yield mapping
             first, end = (int(word, 16) for word in words[0].split("-"))
             is_compiler = COMPILER in words[-1] and "w" not in words[1]
-            start, size = (first, end - first) if is_compiler else (0, 0)
-        elif words[0] == "Private_Dirty:" and size:
-            if int(words[1]) == 0:
-                yield start, size
-            size = 0
+            mapping, copies = ((first, end - first) if is_compiler else None), 0
+        elif words[0] in ("Anonymous:", "Swap:"):
+            copies += int(words[1])

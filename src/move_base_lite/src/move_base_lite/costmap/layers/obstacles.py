@@ -161,8 +161,8 @@ class ObstacleLayer(Layer):
     def _integrate_kept(self, window: CostmapWindow) -> CellBounds:
         """Clear along the beams of all observations, then mark their ends.
 
-        All of them, not only new ones: what one source has marked last stays until it observes anew, even if
-        another one clears there.
+        All of them, not only new ones: what a source has marked last stays until its next observation, even
+        if another one clears there.
         """
         changed = NO_CELLS
         for buffer in self._buffers:

@@ -9,7 +9,7 @@ import numpy as np
 from move_base_lite.costmap.combination import combine
 from move_base_lite.costmap.costs import FREE, LETHAL, UNKNOWN
 from move_base_lite.costmap.layer import CostmapPlacement, Layer, LayerContext, LayerSettings
-from move_base_lite.costmap.static_maps import MapSource
+from move_base_lite.costmap.static_maps import StaticMapSource
 from move_base_lite.costmap.window import NO_CELLS, CellBounds, CostmapWindow
 from planar import OccupancyGrid, Pose2
 from planar.config.parameters import check_parameters, parameter
@@ -43,9 +43,9 @@ class StaticSettings(LayerSettings):
         check_parameters(self)
 
     @property
-    def source(self) -> MapSource:
+    def source(self) -> StaticMapSource:
         """Where the layer has its map from."""
-        return MapSource(self.map_topic, self.first_map_only, self.subscribe_to_updates)
+        return StaticMapSource(self.map_topic, self.first_map_only, self.subscribe_to_updates)
 
 
 class StaticLayer(Layer):

@@ -7,7 +7,7 @@ import numpy as np
 import rospy
 from map_msgs.msg import OccupancyGridUpdate
 
-from move_base_lite.costmap import MapSource, StaticMap
+from move_base_lite.costmap import StaticMap, StaticMapSource
 from planar import OccupancyGrid
 from planar_ros.lockstep import has_synchronized_publisher
 from planar_ros.messages.conversion import OccupancyGridArrays, frame_name, grid_from_msg
@@ -29,10 +29,10 @@ class StaticMapTopics:
         transforms: Transforms from tf.
     """
 
-    def __init__(self, sources: Iterable[MapSource], frames: List[str], transforms: Transforms):
+    def __init__(self, sources: Iterable[StaticMapSource], frames: List[str], transforms: Transforms):
         self._frames, self._transforms = frames, transforms
-        self._new: Dict[MapSource, StaticMap] = {}
-        self._latest: Dict[MapSource, StaticMap] = {}
+        self._new: Dict[StaticMapSource, StaticMap] = {}
+        self._latest: Dict[StaticMapSource, StaticMap] = {}
         self._subscribers = {
             source: subscribe(source.topic, OccupancyGridArrays, partial(self._on_map, source), queue_size=1)
             for source in sorted(sources)
@@ -42,7 +42,7 @@ class StaticMapTopics:
                 handle, topic = partial(self._on_update, source), f"{source.topic}_updates"
                 subscribe(topic, OccupancyGridUpdate, handle, queue_size=UPDATE_QUEUE_SIZE)
 
-    def has_map(self, source: MapSource) -> bool:
+    def has_map(self, source: StaticMapSource) -> bool:
         """Whether a source has sent a map."""
         return source in self._latest
 
@@ -53,7 +53,7 @@ class StaticMapTopics:
             for source, subscriber in self._subscribers.items()
         )
 
-    def take_new(self) -> Dict[MapSource, StaticMap]:
+    def take_new(self) -> Dict[StaticMapSource, StaticMap]:
         """Return the maps since the last call whose frames are known, by source."""
         taken = {}
         for source in [*self._new]:
@@ -63,7 +63,7 @@ class StaticMapTopics:
                 del self._new[source]
         return taken
 
-    def _in_known_frame(self, source: MapSource, static_map: StaticMap) -> Optional[StaticMap]:
+    def _in_known_frame(self, source: StaticMapSource, static_map: StaticMap) -> Optional[StaticMap]:
         frame, grid = static_map.frame, static_map.grid
         if frame in ("", *self._frames):
             return static_map
@@ -76,13 +76,13 @@ class StaticMapTopics:
         moved = OccupancyGrid(grid.cells, grid.resolution, frame_in_map @ grid.origin)
         return StaticMap(moved, self._frames[0])
 
-    def _on_map(self, source: MapSource, message) -> None:
+    def _on_map(self, source: StaticMapSource, message) -> None:
         if source.first_map_only and source in self._latest:
             return
         static_map = StaticMap(grid_from_msg(message), frame_name(message.header.frame_id))
         self._latest[source] = self._new[source] = static_map
 
-    def _on_update(self, source: MapSource, message: OccupancyGridUpdate) -> None:
+    def _on_update(self, source: StaticMapSource, message: OccupancyGridUpdate) -> None:
         latest = self._latest.get(source)
         if latest is None:
             return
