@@ -20,17 +20,19 @@ from sim_bridge.world import Body, Collision, World
 
 SCALE, SIZE, ORIGIN = 190, (620, 480), (70, 250)
 START = Pose2(2.2, 1.0, 1.2)
-BOX = Pose2(1.55, 0.62, 0.4)
+BOX = Pose2(1.85, -0.15, 0.4)
 # Control ticks between two frames.
 TICKS = 4
 FONT = ImageFont.load_default()
 
 
 def save_docking(path: Path) -> None:
-    """Write the animation, and its last frame as a picture beside it."""
+    """Write the animation, or as a PNG file the frame at two thirds of it."""
     frames = _frames()
-    save_animation(path, frames, seconds=9.0)
-    frames[-1].save(path.with_suffix(".png"))
+    if path.suffix == ".gif":
+        save_animation(path, frames, seconds=9.0)
+    else:
+        frames[2 * len(frames) // 3].save(path)
 
 
 def _frames() -> List[Image.Image]:

@@ -74,7 +74,7 @@ def take_report(path: Path, _logs: Optional[Path]) -> None:
 
 
 def take_docking(path: Path, _logs: Optional[Path]) -> None:
-    """Take the animation of a docking."""
+    """Take the animation of a docking, or a picture of it."""
     save_docking(path)
 
 
@@ -172,6 +172,7 @@ TAKERS: Dict[str, Callable[[Path, Optional[Path]], None]] = {
     "report.png": take_report,
     "cockpit.gif": take_cockpit,
     "docking.gif": take_docking,
+    "docking.png": take_docking,
     "cockpit_tools.png": take_tools,
     **{name: take_map for name in LOGS},
 }
