@@ -29,6 +29,7 @@ IMAGES = ROOT / "docs/images"
 sys.path[:0] = [str(path) for path in ROOT.glob("src/*/src")] + [str(ROOT / "tests/shared")]
 
 from browser import Browser, Tab  # noqa: E402
+from docking_animation import save_docking  # noqa: E402
 
 from run_report.picture import save_animation  # noqa: E402
 
@@ -70,6 +71,11 @@ def take_report(path: Path, _logs: Optional[Path]) -> None:
         page = browser.open((folder / "report.html").as_uri(), 1200, 1060)
         page.wait_for("success")
         page.screenshot(path)
+
+
+def take_docking(path: Path, _logs: Optional[Path]) -> None:
+    """Take the animation of a docking, or a picture of it."""
+    save_docking(path)
 
 
 def take_cockpit(path: Path, _logs: Optional[Path]) -> None:
@@ -165,6 +171,8 @@ TAKERS: Dict[str, Callable[[Path, Optional[Path]], None]] = {
     "run.gif": take_run,
     "report.png": take_report,
     "cockpit.gif": take_cockpit,
+    "docking.gif": take_docking,
+    "docking.png": take_docking,
     "cockpit_tools.png": take_tools,
     **{name: take_map for name in LOGS},
 }

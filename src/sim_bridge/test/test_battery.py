@@ -2,6 +2,7 @@
 
 import pytest
 
+from sim_bridge import ROBOTS
 from sim_bridge.power.battery import (
     KOBUKI_BATTERY,
     TURTLEBOT3_BATTERY,
@@ -91,3 +92,17 @@ def test_motors_need_more_power_for_speed_and_for_acceleration_and_none_at_rest(
 def test_a_capacity_of_zero_is_that_of_the_standard_pack():
     assert Battery(KOBUKI_BATTERY, 1.0, 0.0).capacity == 2.2
     assert Battery(KOBUKI_BATTERY, 1.0, 4.4).capacity == 4.4
+
+
+@pytest.mark.parametrize(
+    "name, battery",
+    [
+        ("turtlebot_lidar", KOBUKI_BATTERY),
+        ("turtlebot_kinect", KOBUKI_BATTERY),
+        ("turtlebot3_burger", TURTLEBOT3_BATTERY),
+        ("turtlebot3_waffle", TURTLEBOT3_BATTERY),
+        ("jackal", None),
+    ],
+)
+def test_robots_have_the_batteries_of_their_bases(name, battery):
+    assert ROBOTS[name].battery is battery

@@ -22,7 +22,7 @@ class DockController:
 
     Args:
         settings: Speeds, limits and expected field.
-        navigation: Client of move_base; None if the robot shall only drive by itself.
+        navigation: Client of move_base; None if only the controller shall drive the robot.
         seed: Seed of the estimator of the dock's pose.
 
     Attributes:

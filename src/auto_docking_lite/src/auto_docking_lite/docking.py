@@ -1,10 +1,13 @@
 """The task of docking: states, attempts, and the reasons for which it fails."""
 
 import math
-from typing import Callable, Dict, Optional, Tuple
+from typing import Callable, Dict, Optional, Sequence, Tuple
 
 import numpy as np
 
+from auto_docking_lite.approach import ApproachMonitor
+from auto_docking_lite.attempts import STOP, RetriedTask
+from auto_docking_lite.backing import BackingOff
 from auto_docking_lite.config import DockingSettings
 from auto_docking_lite.contract import (
     DockCode,
@@ -14,48 +17,28 @@ from auto_docking_lite.contract import (
     DockState,
     StagingPort,
 )
+from auto_docking_lite.detours import free_legs
 from auto_docking_lite.estimator import DockEstimate, DockEstimator
-from auto_docking_lite.motion import (
-    LOOKAHEAD,
-    drive_to,
-    follow_line,
-    is_free,
-    obstacles_in_base,
-    shortest_free,
-    turn_to,
-)
+from auto_docking_lite.motion import drive_to, follow_line, turn_to
 from auto_docking_lite.poses import staging_pose
 from planar import Pose2, Twist2, wrap
 from planar.driving import DriveResult
 from planar.geometry.dock_field import NEAR, ROBOT_FRONT
 
-STOP = Twist2()
 ARRIVED = "Arrived on docking station successfully."
 # Uncertainty with which the robot leaves the scan [m, rad].
 SCAN_DEVIATION = 0.25, 0.35
 # Angle of the scan after which any signal is enough [rad].
 SCAN_ANGLE = 2.5
-# Distance from the staging pose and from the middle line at which the approach begins [m].
-STAGED, ON_LINE = 0.06, 0.1
+# Distance from the staging pose, or from the middle line, at which the approach begins [m].
+STAGED = 0.06
 # Heading error with which the approach begins [rad].
 ALIGNED = 0.06
-# Distance of the front from which lateral and heading errors must be small enough for the contacts [m, rad].
-GATE, GATE_ERRORS = 0.12, (0.06, 0.3)
-# Distance by which the robot backs off from what it bumped into, and its speed [m, m/s].
-BACKING, BACKING_SPEED = 0.3, 0.15
-# Time without progress at the dock [s], and distance by which the robot may drive on past it [m].
-STALLED, OVERSHOOT = 3.0, 0.06
-# Distance that counts as progress, and by which obstacles may be nearer during the approach [m].
-MOVED, MARGIN = 0.01, 0.02
-# Time without a signal during the approach after which the robot searches again [s].
-LOST = 4.0
-# Bearings of the staging poses of the attempts, and of stopovers on the way around an obstacle [rad].
-BEARINGS, STOPOVERS = (0.0, 0.0, 0.3, -0.3, 0.5), (0.4, -0.4, 0.8, -0.8)
-# Distance of stopovers around the robot [m], and their number.
-DETOUR, DETOURS = 0.8, 8
+# Bearings of the staging poses of the attempts [rad].
+BEARINGS = 0.0, 0.0, 0.3, -0.3, 0.5
 
 
-class Docking:
+class Docking(RetriedTask):
     """Docks the robot.
 
     Args:
@@ -63,9 +46,6 @@ class Docking:
         navigation: Drives the robot to a distant dock or around obstacles; None for none.
         dock_in_map: Pose of the dock, if it is known.
         seed: Seed of the estimator.
-
-    Attributes:
-        state: Present state.
     """
 
     def __init__(
@@ -75,15 +55,13 @@ class Docking:
         dock_in_map: Optional[Pose2],
         seed: int,
     ):
-        self._settings, self._navigation, self._dock_in_map = settings, navigation, dock_in_map
+        super().__init__(settings)
+        self._navigation, self._dock_in_map = navigation, dock_in_map
         self._estimator = DockEstimator(settings, np.random.default_rng(seed))
-        self.state = DockState.IDLE
-        self._text, self._failure = "", (DockCode.FAILED_TO_DETECT_DOCK, "no signal of a dock")
-        self._attempt, self._turned, self._last_yaw, self._side = 0, 0.0, 0.0, 0.0
-        self._since: Dict[str, float] = {}
-        self._backed_to: Optional[Pose2] = None
-        self._moved_to: Optional[Pose2] = None
+        self._turned, self._last_yaw, self._side = 0.0, 0.0, 0.0
+        self._backing: Optional[BackingOff] = None
         self._is_sent = False
+        self._monitor = ApproachMonitor(settings)
         self._handlers: Dict[DockState, Callable[[DockInputs], Optional[Twist2]]] = {
             DockState.IDLE: self._begin,
             DockState.STAGING: self._stage,
@@ -107,7 +85,6 @@ class Docking:
         self._estimator.update(inputs.signals)
         self._turned += abs(wrap(inputs.base_in_odom.yaw - self._last_yaw))
         self._last_yaw = inputs.base_in_odom.yaw
-        self._result: Optional[DockResult] = None
         if inputs.charger:
             command: Optional[Twist2] = self._charge(inputs)
         else:
@@ -127,7 +104,7 @@ class Docking:
         self._is_sent = False
 
     def _begin(self, inputs: DockInputs) -> Optional[Twist2]:
-        expected = self._expected(inputs)
+        expected = _expected(self._dock_in_map, inputs)
         if expected is not None:
             self._estimator.expect(expected)
             in_dock = expected.inverse() @ inputs.base_in_odom
@@ -136,12 +113,6 @@ class Docking:
             if distance > reach or bearing > self._settings.dock_side_half_angle:
                 return self._enter(DockState.STAGING, "driving to the staging pose")
         return self._enter(DockState.SCAN, "searching for the dock")
-
-    def _expected(self, inputs: DockInputs) -> Optional[Pose2]:
-        """Return the pose of the known dock in odom; None if it, or the robot's in the map, is unknown."""
-        if self._dock_in_map is None or inputs.odom_in_map is None:
-            return None
-        return inputs.odom_in_map.inverse() @ self._dock_in_map
 
     def _target(self) -> Pose2:
         """Return the staging pose of the present attempt in odom."""
@@ -203,22 +174,11 @@ class Docking:
             return self._enter(DockState.STAGING, "driving around an obstacle")
         return self._straight(inputs, target)
 
-    def _legs(self, inputs: DockInputs, target: Pose2):
-        """Return the next positions on a free drive of straight legs to a target in odom; None without."""
-        base, estimate = inputs.base_in_odom, self._estimator.estimate()
+    def _legs(self, inputs: DockInputs, target: Pose2) -> Optional[Sequence[Pose2]]:
+        """Return the positions on a free drive of straight legs to a target in odom; None without one."""
+        estimate = self._estimator.estimate()
         assert estimate is not None
-        dock, distance = estimate.dock_in_odom, self._settings.staging_distance
-        obstacles = base.transform_points(obstacles_in_base(inputs.scan))
-        stopovers = [
-            dock @ Pose2(0.0, 0.0, bearing) @ Pose2(factor * distance)
-            for bearing in STOPOVERS
-            for factor in (1.0, 1.6)
-        ]
-        stopovers += [
-            base @ Pose2(0.0, 0.0, 2.0 * math.pi * number / DETOURS) @ Pose2(DETOUR)
-            for number in range(DETOURS)
-        ]
-        return shortest_free(obstacles, base, target, stopovers, self._settings.robot_radius)
+        return free_legs(inputs, target, estimate.dock_in_odom, self._settings)
 
     def _straight(self, inputs: DockInputs, target: Pose2) -> Optional[Twist2]:
         """Drive to a target by straight legs; wait while something is in the way."""
@@ -231,15 +191,6 @@ class Docking:
             self.state = DockState.GET_STREAM if command.v > 0.0 else DockState.FIND_STREAM
         return command
 
-    def _wait(self, inputs: DockInputs, code: DockCode, text: str) -> Optional[Twist2]:
-        """Stand still while something is in the way, for some time."""
-        self._text = text
-        waited = inputs.stamp - self._since.setdefault("blocked", inputs.stamp)
-        if waited > self._settings.blocked_timeout:
-            self._since.pop("blocked")
-            return self._retry(code, text)
-        return STOP
-
     def _align(self, inputs: DockInputs) -> Optional[Twist2]:
         """Turn to the dock."""
         estimate, base = self._estimator.estimate(), inputs.base_in_odom
@@ -247,6 +198,7 @@ class Docking:
         error = _bearing(estimate.dock_in_odom, base)
         if abs(error) > ALIGNED:
             return turn_to(error, self._settings)
+        self._monitor = ApproachMonitor(self._settings)
         return self._enter(DockState.ALIGNED_FAR, "approaching along the middle line")
 
     def _approach(self, inputs: DockInputs) -> Optional[Twist2]:
@@ -255,49 +207,18 @@ class Docking:
         assert estimate is not None
         in_dock = estimate.dock_in_odom.inverse() @ inputs.base_in_odom
         front = in_dock @ Pose2(ROBOT_FRONT)
-        reason = self._approach_error(inputs, front)
+        reason = self._monitor.error(inputs, front)
         if reason is not None:
             return self._retry(*reason)
-        if not self._is_path_free(inputs, in_dock):
+        if not self._monitor.is_path_free(inputs, in_dock):
+            self._monitor.pause()
             return self._wait(inputs, DockCode.FAILED_TO_CONTROL, "something is before the dock")
         self._since.pop("blocked", None)
-        if self._is_stalled(inputs):
+        if self._monitor.is_stalled(inputs):
             return self._retry(DockCode.FAILED_TO_CHARGE, "no progress at the dock, which does not charge")
         is_near = any(signal & NEAR for _, signals in inputs.signals for signal in signals)
         self.state = DockState.ALIGNED_NEAR if is_near else DockState.ALIGNED_FAR
         return follow_line(in_dock, front.x, self._settings)
-
-    def _approach_error(self, inputs: DockInputs, front: Pose2) -> Optional[Tuple[DockCode, str]]:
-        """Return why the approach cannot succeed any more; None if it can."""
-        stamp = inputs.stamp
-        if not inputs.signals or any(signals[1] for _, signals in inputs.signals):
-            self._since["signal"] = stamp
-        if stamp - self._since.setdefault("signal", stamp) > LOST:
-            return DockCode.FAILED_TO_DETECT_DOCK, "lost the signal of the dock"
-        heading = abs(wrap(front.yaw - math.pi))
-        if front.x < GATE and (abs(front.y) > GATE_ERRORS[0] or heading > GATE_ERRORS[1]):
-            return DockCode.FAILED_TO_CONTROL, "reached the dock beside its contacts"
-        if front.x > self._settings.dock_contact_distance:
-            self._since.pop("dock", None)
-        elif front.x < -OVERSHOOT or stamp - self._since.setdefault("dock", stamp) > STALLED:
-            return DockCode.FAILED_TO_CHARGE, "reached the dock, but it does not charge"
-        return None
-
-    def _is_path_free(self, inputs: DockInputs, base_in_dock: Pose2) -> bool:
-        """Return whether nothing but the dock, and what is behind it, is ahead."""
-        points = base_in_dock.transform_points(obstacles_in_base(inputs.scan))
-        points = points[points[:, 0] > ROBOT_FRONT / 2.0]
-        radius = self._settings.robot_radius - MARGIN
-        near, far = (Pose2(max(base_in_dock.x - factor * LOOKAHEAD, ROBOT_FRONT)) for factor in (1.0, 2.0))
-        return is_free(points, base_in_dock, near, radius) and is_free(points, near, far, radius)
-
-    def _is_stalled(self, inputs: DockInputs) -> bool:
-        """Return whether the robot has not moved for some time although it shall."""
-        base = inputs.base_in_odom
-        if self._moved_to is None or base.distance_to(self._moved_to) > MOVED:
-            self._moved_to = base
-            self._since["moved"] = inputs.stamp
-        return inputs.stamp - self._since.setdefault("moved", inputs.stamp) > STALLED
 
     def _charge(self, inputs: DockInputs) -> Twist2:
         """Stand still on the contacts until the robot has charged for a while."""
@@ -311,49 +232,27 @@ class Docking:
 
     def _bump(self, inputs: DockInputs) -> None:
         """Back off from what the robot has touched; at the dock this is a failed attempt."""
-        estimate = self._estimator.estimate()
         is_at_dock = self.state in (DockState.ALIGNED_FAR, DockState.ALIGNED_NEAR, DockState.DOCKED_IN)
         self.stop()
-        if is_at_dock and estimate is not None:
+        if is_at_dock:
             self._retry(DockCode.FAILED_TO_CHARGE, "touched the dock, but it does not charge")
         else:
             self._retry(DockCode.FAILED_TO_CONTROL, "touched something on the way to the dock")
-        self._backed_to = inputs.base_in_odom @ Pose2(-BACKING)
+        self._backing = None
 
     def _back_off(self, inputs: DockInputs) -> Optional[Twist2]:
-        base = inputs.base_in_odom
-        if self._backed_to is None:
-            self._backed_to = base @ Pose2(-BACKING)
-        started = self._since.setdefault("backing", inputs.stamp)
-        remaining = (self._backed_to.inverse() @ base).x
-        obstacles = obstacles_in_base(inputs.scan)
-        is_blocked = not is_free(obstacles, Pose2(), Pose2(-0.05), self._settings.robot_radius)
-        if remaining <= 0.0 or is_blocked or inputs.stamp - started > 2.0 * BACKING / BACKING_SPEED:
-            self._since.pop("backing")
-            self._backed_to = None
-            if self._estimator.has_signal:
-                return self._enter(DockState.FIND_STREAM, "turning to the middle line")
-            return self._enter(DockState.SCAN, "searching for the dock")
-        return Twist2(-BACKING_SPEED)
+        self._backing = self._backing or BackingOff(inputs, self._settings)
+        command = self._backing.command(inputs)
+        if command is not None:
+            return command
+        self._backing = None
+        if self._estimator.has_signal:
+            return self._enter(DockState.FIND_STREAM, "turning to the middle line")
+        return self._enter(DockState.SCAN, "searching for the dock")
 
     def _enter(self, state: DockState, text: str) -> Twist2:
-        self.state, self._text, self._turned, self._side = state, text, 0.0, 0.0
-        self._since = {name: at for name, at in self._since.items() if name == "charging"}
-        return STOP
-
-    def _retry(self, code: DockCode, text: str, state: DockState = DockState.BUMPED) -> Optional[Twist2]:
-        """Try once more from another side, or fail."""
-        self._failure = code, text
-        self._attempt += 1
-        if self._attempt > self._settings.max_retries:
-            return self._fail(code, text)
-        return self._enter(state, f"{text}; attempt {self._attempt + 1}")
-
-    def _fail(self, code: DockCode, text: str) -> Twist2:
-        attempts = f" ({self._attempt} attempts)" if self._attempt > 1 else ""
-        self._result = DockResult(code, f"Aborted: {code.name} ({int(code)}): {text}{attempts}.")
-        self.state = DockState.IDLE
-        return STOP
+        self._turned = self._side = 0.0
+        return super()._enter(state, text)
 
 
 def _is_known(estimate: DockEstimate, limits: Tuple[float, float]) -> bool:
@@ -364,3 +263,10 @@ def _is_known(estimate: DockEstimate, limits: Tuple[float, float]) -> bool:
 def _bearing(dock: Pose2, base: Pose2) -> float:
     """Return the direction to a dock in the robot's frame [rad]."""
     return wrap(math.atan2(dock.y - base.y, dock.x - base.x) - base.yaw)
+
+
+def _expected(dock_in_map: Optional[Pose2], inputs: DockInputs) -> Optional[Pose2]:
+    """Return the pose of the known dock in odom; None if it, or the robot's in the map, is unknown."""
+    if dock_in_map is None or inputs.odom_in_map is None:
+        return None
+    return inputs.odom_in_map.inverse() @ dock_in_map

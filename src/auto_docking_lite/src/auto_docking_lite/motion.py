@@ -1,7 +1,7 @@
 """Control laws of docking, and free space in a scan."""
 
 import math
-from typing import Iterable, Optional, Sequence
+from typing import Optional
 
 import numpy as np
 
@@ -76,27 +76,3 @@ def is_free(obstacles_xy: np.ndarray, start: Pose2, end: Pose2, radius: float) -
     distances = np.hypot(*(from_start - share[:, None] * along).T)
     needed = np.minimum(radius + CLEARANCE, np.hypot(*from_start.T) - TOUCH)
     return bool((distances >= needed).all())
-
-
-def shortest_free(
-    obstacles_xy: np.ndarray, start: Pose2, end: Pose2, stopovers: Iterable[Pose2], radius: float
-) -> Optional[Sequence[Pose2]]:
-    """Return the shortest free drive of one or two straight legs; None if there is none.
-
-    Args:
-        obstacles_xy: Obstacles (N, 2), in the frame of the poses.
-        start: Start of the drive.
-        end: End of the drive.
-        stopovers: Positions at which the legs may meet.
-        radius: Radius of the robot [m].
-    """
-    if is_free(obstacles_xy, start, end, radius):
-        return (end,)
-    free = [
-        via
-        for via in stopovers
-        if is_free(obstacles_xy, start, via, radius) and is_free(obstacles_xy, via, end, radius)
-    ]
-    if not free:
-        return None
-    return min(free, key=lambda via: start.distance_to(via) + via.distance_to(end)), end

@@ -2,12 +2,11 @@
 
 from typing import Optional
 
+from auto_docking_lite.attempts import STOP
 from auto_docking_lite.config import DockingSettings
 from auto_docking_lite.contract import DockCode, DockDecision, DockInputs, DockResult, DockState
 from auto_docking_lite.motion import is_free, obstacles_in_base
 from planar import Pose2, Twist2
-
-STOP = Twist2()
 
 
 class Undocking:

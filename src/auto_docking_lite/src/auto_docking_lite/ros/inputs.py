@@ -56,14 +56,14 @@ class DockTopics:
         return [name for name in names if now - self._seen.get(name, -SILENT_SECONDS) >= SILENT_SECONDS]
 
     def clear(self) -> None:
-        """Forget all messages, as after time has jumped back."""
+        """Discard all messages, as after time has jumped back."""
         with self._lock:
             self._odometry.clear()
             self._signals.clear()
             self._seen.clear()
             self._core = self._scan = None
 
-    def take(self, now: float) -> Optional[DockInputs]:
+    def collect(self, now: float) -> Optional[DockInputs]:
         """Return the inputs of a control tick, with the signals since the last call; None without odometry.
 
         Args:
@@ -84,17 +84,17 @@ class DockTopics:
         scan, base = self._scan, odometry[-1][1]
         return DockInputs(now, base, tuple(matched), core.bumper, core.charger, scan, odom_in_map)
 
-    def _note(self, name: str) -> None:
+    def _record(self, name: str) -> None:
         self._seen[rospy.resolve_name(name)] = rospy.get_time()
 
     def _on_odometry(self, message: Any) -> None:
         with self._lock:
             self._odometry.append((message.header.stamp.to_sec(), pose2_from_msg(message.pose.pose)))
-        self._note("~odom")
+        self._record("~odom")
 
     def _on_core(self, message: Any) -> None:
         self._core = message
-        self._note("~core")
+        self._record("~core")
 
     def _on_signals(self, message: Any) -> None:
         data = tuple(message.data)
@@ -102,7 +102,7 @@ class DockTopics:
             raise MessageError(f"data must have {RECEIVERS} bytes, right, centre and left, got {len(data)}")
         with self._lock:
             self._signals.append((message.header.stamp.to_sec(), (data[0], data[1], data[2])))
-        self._note("~dock_ir")
+        self._record("~dock_ir")
 
     def _on_scan(self, message: Any) -> None:
         frame = frame_name(message.header.frame_id)

@@ -115,7 +115,7 @@ class AutoDocking:
             else:
                 self._controller.start(stamp, self._dock)
             rospy.loginfo("%s: new goal received and accepted", accepted)
-        inputs = self._topics.take(stamp)
+        inputs = self._topics.collect(stamp)
         if not self._controller.is_active:
             return
         if self._actions.is_cancelled():
