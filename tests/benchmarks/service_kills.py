@@ -63,6 +63,7 @@ def serve(path, site, pipe):
         order = host.cycle(now, robot, event)
         accepted = [answer.result()["booking"]["id"] for answer in answers if answer.exception() is None]
         refused = [str(answer.exception()) for answer in answers if answer.exception() is not None]
+        assert host.service is not None, "the journal can be written"
         pipe.send((order, accepted, refused, dict(host.service.book.objects)))
 
 
@@ -170,7 +171,7 @@ class Campaign:
             self.kills += 1
         process.join()
         if process.exitcode != -signal.SIGKILL:
-            self.world.faults.append(f"the service ended by itself with exit code {process.exitcode}")
+            self.world.faults.append(f"the service ended with exit code {process.exitcode}")
 
     def _cycle(self, pipe, is_last):
         self.now += CYCLE

@@ -149,7 +149,8 @@ class TaskExecutor:
         steps = task.request.description.steps()
         if task.step >= len(steps):
             self._end(task, TaskStatus.COMPLETED, now)
-            return self._stop_task()
+            self._stop_task()
+            return None
         step = steps[task.step]
         problem = self._problem_of(task, step)
         if problem:

@@ -1,6 +1,6 @@
 """Requests from a mission file."""
 
-from typing import Any, Dict, List
+from typing import Any, Dict, List, Set
 
 from pick_objects import Mission
 
@@ -13,7 +13,9 @@ def documents_of(mission: Mission, prefix: str) -> List[Dict[str, Any]]:
         prefix: Begin of their ids, by which they are accepted once.
     """
     ids = {delivery.name: f"{prefix}-{number}" for number, delivery in enumerate(mission.deliveries, 1)}
-    waiting, documents, done = list(mission.deliveries), [], set()
+    waiting = list(mission.deliveries)
+    documents: List[Dict[str, Any]] = []
+    done: Set[str] = set()
     while waiting:  # a mission has no cycles
         delivery = next(each for each in waiting if done.issuperset(each.after))
         waiting.remove(delivery)
