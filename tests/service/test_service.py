@@ -94,7 +94,7 @@ class ServiceTest(unittest.TestCase):
         chance = random.Random(0)
         names = [f"killed-{number}" for number in range(12)]
         for number, name in enumerate(names):
-            text = f"deliver thing{number} from pickup to dropoff"
+            text = f"deliver item{number} from pickup to dropoff"
             self.client.submit({"text": text, "id": name}, patience=20.0)
         for _ in range(KILLS):
             time.sleep(chance.uniform(0.0, 1.0))
@@ -104,7 +104,7 @@ class ServiceTest(unittest.TestCase):
         self.assertEqual(sorted(task["booking"]["id"] for task in history), sorted(names))
         self.assertEqual({task["status"] for task in history}, {"completed"})
         for number in range(12):
-            self.assertEqual(self.carried.count((f"thing{number}", True)), 1)
+            self.assertEqual(self.carried.count((f"item{number}", True)), 1)
 
     def _ended(self, name):
         try:
