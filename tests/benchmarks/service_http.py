@@ -65,7 +65,8 @@ class Load:
     """Sends requests at a rate from several threads."""
 
     def __init__(self, folder, rate, count):
-        self._folder, self._rate, self._waiting = folder, rate, queue.Queue()
+        self._folder, self._rate = folder, rate
+        self._waiting: queue.Queue[int] = queue.Queue()
         for number in range(count):
             self._waiting.put(number)
         self.answered, self.delays, self.failed = [], [], []

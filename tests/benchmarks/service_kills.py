@@ -43,6 +43,8 @@ DOCK = Pose2(0.5, -3.0)
 # they start.
 CYCLE, MOST_CYCLES, LONGEST_DELAY, EARLY_SHARE = 2.0, 30, 0.02, 0.2
 OBJECTS = 5
+# Share of cycles in which a request is sent: as many as the robot can carry out.
+NEW_SHARE = 0.04
 
 
 def make_site():
@@ -63,6 +65,7 @@ def serve(path, site, pipe):
         order = host.cycle(now, robot, event)
         accepted = [answer.result()["booking"]["id"] for answer in answers if answer.exception() is None]
         refused = [str(answer.exception()) for answer in answers if answer.exception() is not None]
+        assert host.service is not None, "the journal can be written"
         pipe.send((order, accepted, refused, dict(host.service.book.objects)))
 
 
@@ -99,7 +102,7 @@ class Client:
 
     def documents(self):
         """Return what has to be sent; now and then a new delivery or another request."""
-        if len(self.waiting) == 0 and self._rng.random() < 0.15:
+        if len(self.waiting) == 0 and self._rng.random() < NEW_SHARE:
             self.sent += 1
             name = f"client-{self.sent}"
             if self._rng.random() < 0.3:
@@ -170,7 +173,7 @@ class Campaign:
             self.kills += 1
         process.join()
         if process.exitcode != -signal.SIGKILL:
-            self.world.faults.append(f"the service ended by itself with exit code {process.exitcode}")
+            self.world.faults.append(f"the service ended with exit code {process.exitcode}")
 
     def _cycle(self, pipe, is_last):
         self.now += CYCLE

@@ -12,7 +12,7 @@ from service_bench import NOW, Bench
 
 from service.errors import JournalError
 from service.execution.robot import RobotInputs, StopRobot
-from service.host import ServiceHost, submit
+from service.host import ServiceHost, submit, task
 from service.journal import VERSION, Journal, JournalLimits
 from service.task import TaskStatus
 from service.task_book import Changes, JournalEntry
@@ -189,6 +189,17 @@ def test_a_full_disk_stops_the_robot_and_refuses_requests(tmp_path):
     assert isinstance(later.exception(), JournalError)
     host.close()
     assert [task.id for task in Journal(tmp_path / "journal.db").restore().tasks] == accepted
+
+
+def test_a_task_that_ends_while_it_is_asked_for_is_answered(tmp_path):
+    host, bench = host_of(tmp_path / "journal.db"), Bench()
+    host.call(submit({"text": "wait 0", "id": "short"}))
+    statuses = []
+    for number in range(6):
+        answer = host.call(task("short")) if number else None
+        host.cycle(NOW + number, bench.robot.inputs(NOW + number))
+        statuses += [answer.result()["status"]] if answer else []
+    assert statuses[-1] == "completed"
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root writes anywhere")

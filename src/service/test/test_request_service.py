@@ -5,12 +5,14 @@ from datetime import timezone
 import pytest
 from service_bench import NOW, PLACES, Bench, ideal_robot, site
 
-from pick_objects import DriveToPlace
+from evaluation.options import ROOT
+from pick_objects import DriveToPlace, load_mission
 from planar import Pose2
 from planar.driving import GoalFailed, RobotDisplaced
 from service.config import EnergySettings, ServiceSettings
 from service.errors import QueueFullError, RequestError, TaskEndedError, UnknownTaskError
 from service.execution.robot import DockRobot, UndockRobot
+from service.requests.mission_requests import documents_of
 from service.task import TaskStatus
 from service.task_book import Snapshot
 
@@ -273,3 +275,23 @@ def test_state_reports_what_the_robot_does():
     state = bench.service.state(bench.now)
     assert (state["activity"], state["task"], state["carrying"]) == ("driving to desk", task.id, "cup")
     assert state["objects"] == {"cup": "on the robot"}
+
+
+def test_a_request_waits_for_others_and_fails_with_them():
+    bench = Bench()
+    first = bench.send("go desk", id="first")
+    second = bench.send("go kitchen", id="second", after=["first"], priority=9)
+    third = bench.send("go hall", id="third", after=["second"])
+    bench.finish(first)
+    bench.service.cancel(second.id, bench.now)
+    bench.finish(third)
+    assert bench.ended["third"].reason == "task second was not done"
+    with pytest.raises(RequestError, match="after: there is no task"):
+        bench.send("go hall", after=["fourth"])
+
+
+def test_the_deliveries_of_a_mission_are_requests():
+    mission = load_mission(ROOT / "map/mission.yaml")
+    documents = documents_of(mission, "m")
+    assert [document["id"] for document in documents] == ["m-1", "m-2", "m-3", "m-4"]
+    assert documents[3]["after"] == ["m-2"]

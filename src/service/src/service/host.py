@@ -106,20 +106,15 @@ class ServiceHost:
         if calls:
             self.service.plan(now)
         order = self.service.advance(now, robot, event)
-        ready = [(call, error, None if error else answer()) for call, answer, error in answers]
         try:
             self._store()
         except JournalError as error:
             self._give_up(error)
             self._refuse(calls)
             return StopRobot()
-        for call, problem, value in ready:
-            if not call.answer.set_running_or_notify_cancel():
-                continue
-            if problem is not None:
-                call.answer.set_exception(problem)
-            else:
-                call.answer.set_result(value)
+        for call, answer, problem in answers:
+            if call.answer.set_running_or_notify_cancel():
+                _give(call.answer, answer, problem)
         return order
 
     def close(self) -> None:
@@ -193,6 +188,16 @@ class ServiceHost:
         for call in calls:
             if call.answer.set_running_or_notify_cancel():
                 call.answer.set_exception(JournalError(self.problem))
+
+
+def _give(future: "Future[Any]", answer: Callable[[], Any], problem: Optional[PlanarError]) -> None:
+    """Answer a call, now that what it has changed is in the journal."""
+    try:
+        if problem is not None:
+            raise problem
+        future.set_result(answer())
+    except PlanarError as error:
+        future.set_exception(error)
 
 
 def series_to_json(series: Series) -> Dict[str, Any]:

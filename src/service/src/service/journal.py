@@ -206,8 +206,8 @@ class Journal:
                 body = json.dumps(request_to_json(series.request))
                 self._execute("INSERT OR REPLACE INTO series VALUES (?, ?, ?)", name, series.next_start, body)
         for entry in changes.log:
-            row = (entry.stamp, entry.kind, entry.task, entry.text)
-            self._execute("INSERT INTO log (stamp, kind, task, text) VALUES (?, ?, ?, ?)", *row)
+            query = "INSERT INTO log (stamp, kind, task, text) VALUES (?, ?, ?, ?)"
+            self._execute(query, entry.stamp, entry.kind, entry.task, entry.text)
         if changes.robot is not None:
             self._put("robot", json.dumps(asdict(changes.robot)))
         self._put("next_number", str(next_number))

@@ -55,13 +55,14 @@ class Request:
         given = {name: value for name, value in options.items() if value is not None}
         if self.priority:
             given["priority"] = self.priority
+        # By its id, a request whose answer is lost is sent again and accepted once.
+        name = f"r-{uuid.uuid4().hex[:12]}"
         documents: List[Dict[str, Any]] = []
         if self.mission is not None:
-            documents = documents_of(load_mission(self.mission))
+            documents = documents_of(load_mission(self.mission), name)
         if self.words:
-            documents.append({"text": " ".join(self.words)})
-        # With an id of its own, a request whose answer is lost is sent again and accepted once.
-        return [{**document, **given, "id": f"r-{uuid.uuid4().hex[:12]}"} for document in documents]
+            documents.append({"text": " ".join(self.words), "id": name})
+        return [{**document, **given} for document in documents]
 
     def _submit(self, client: Any, document: Dict[str, Any]) -> str:
         from service.requests.calendar_times import clock_text

@@ -36,12 +36,9 @@ class Service(GraphOptions, MissionOptions):
         from evaluation.ros.run_modes import run_until_interrupted
         from headless_mission.inputs import read_mission
         from service.config import dock_pose
-        from service.requests.mission_requests import documents_of
 
         dock = dock_pose(self.dock or "")
-        inputs = read_mission(self)
-        if self.mission is not None:
-            documents_of(inputs.mission)
+        places = read_mission(self).places
         launch = self.launch(
             "service.launch",
             **self.files(),
@@ -51,7 +48,7 @@ class Service(GraphOptions, MissionOptions):
             http_port=self.http_port,
         ).with_respawn(*RESPAWNED)
         hint = f"send requests with ./scripts/request.sh --state {self.state}; Ctrl-C ends"
-        return run_until_interrupted(self, launch, hint, inputs.places, idle_text="waiting for requests")
+        return run_until_interrupted(self, launch, hint, places, idle_text="waiting for requests")
 
     def _start(self) -> Dict[str, float]:
         """Return where the robot starts: where it was when the service ended."""

@@ -149,7 +149,8 @@ class TaskExecutor:
         steps = task.request.description.steps()
         if task.step >= len(steps):
             self._end(task, TaskStatus.COMPLETED, now)
-            return self._stop_task()
+            self._stop_task()
+            return None
         step = steps[task.step]
         problem = self._problem_of(task, step)
         if problem:
@@ -231,6 +232,10 @@ class TaskExecutor:
         ended = self._book.put(task.ended(status, now, reason))
         late = " after its deadline" if ended.is_late and status is TaskStatus.COMPLETED else ""
         self._book.log(now, "ended", f"{status.value}{late}{': ' if reason else ''}{reason}", task.id)
+        if status is not TaskStatus.COMPLETED:
+            for other in list(self._book.tasks.values()):
+                if task.id in other.request.after:
+                    self._end(other, TaskStatus.FAILED, now, f"task {task.id} was not done")
 
     def _stop_task(self) -> None:
         self.current, self.activity, self._is_returning = "", None, False

@@ -36,6 +36,7 @@ REQUEST: Dict[str, Any] = {
         },
         "requester": TEXT,
         "labels": {"type": "array", "items": TEXT, "maxItems": MAX_LABELS},
+        "after": {"type": "array", "items": TEXT, "description": "ids of tasks to be done before"},
         "unix_millis_request_time": MILLIS,
         "unix_millis_earliest_start_time": MILLIS,
         "unix_millis_deadline": MILLIS,

@@ -102,7 +102,7 @@ class QueueScheduler:
             if name:
                 after = [latest[key] for key in (name, "*") if key in latest and latest[key] != task.id]
                 latest[name] = task.id
-            jobs.append(self._job(task, tuple(after)))
+            jobs.append(self._job(task, (*after, *task.request.after)))
         if len(self._cache) > 2 * len(jobs) + 100:
             self._cache = {job.id: self._cache[job.id] for job in jobs}
         return jobs

@@ -1,14 +1,14 @@
 """Acceptance and cancellation of requests."""
 
 import re
-from typing import Any, Callable, List, Mapping, Optional, Union
+from typing import Any, Callable, List, Mapping, Optional, Sequence, Union
 
 from planar.maps.places import NamedPlace
 from service.errors import QueueFullError, RequestError, TaskEndedError, UnknownTaskError
 from service.requests.parser import Knowledge, parse_request
 from service.requests.repetitions import Repetitions
 from service.requests.request import Deliver, Fetch
-from service.task import ObjectState, Series, ServiceTask
+from service.task import ObjectState, Series, ServiceTask, TaskStatus
 from service.task_book import TaskBook
 
 GIVEN_ID = re.compile(r"(?=.*[A-Za-z_-])[A-Za-z0-9_.:-]{1,64}")
@@ -63,6 +63,7 @@ class Admission:
         if len(self._book.tasks) + len(self._book.series) >= self._max_open:
             raise QueueFullError(f"{self._max_open} requests are open already; send it again later")
         self._check_object(request.description)
+        self._check_after(request.after)
         task_id = given or self._book.new_id()
         self._book.log(now, "accepted", f"from {request.requester or 'unknown'}", task_id)
         if request.repeat:
@@ -107,6 +108,15 @@ class Admission:
                 ["id: expected at most 64 letters, digits and any of _ . : -, not only digits"]
             )
         return self._book.tasks.get(given) or self._book.series.get(given) or self._find_ended(given)
+
+    def _check_after(self, names: Sequence[str]) -> None:
+        """Refuse to wait for tasks that are unknown, or were not done."""
+        for name in names:
+            earlier = self._book.tasks.get(name) or self._find_ended(name)
+            if earlier is None:
+                raise RequestError([f"after: there is no task {name}"])
+            if not earlier.is_open and earlier.status is not TaskStatus.COMPLETED:
+                raise RequestError([f"after: task {name} is {earlier.status.value}"])
 
     def _check_object(self, description: Any) -> None:
         """Refuse what contradicts the open requests."""

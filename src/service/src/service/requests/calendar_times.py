@@ -34,11 +34,8 @@ def parse_time(text: str, now: float, zone: Optional[tzinfo] = None) -> float:
             hours, minutes, seconds = (int(number or 0) for number in match.groups())
             at = today.replace(hour=hours, minute=minutes, second=seconds, microsecond=0)
             return (at if at.timestamp() >= now else at + timedelta(days=1)).timestamp()
-        return (
-            (datetime.fromisoformat(text.replace("Z", "+00:00")))
-            .replace(**({} if re.search(r"[+-]\d{2}:\d{2}$|Z$", text) else {"tzinfo": zone}))
-            .timestamp()
-        )
+        moment = datetime.fromisoformat(text.replace("Z", "+00:00"))
+        return (moment if moment.tzinfo is not None else moment.replace(tzinfo=zone)).timestamp()
     except (ValueError, OverflowError, OSError):
         raise RequestError([f"'{text}' is no time; expected {FORMS}"]) from None
 

@@ -1,34 +1,34 @@
 """Requests from a mission file."""
 
-from typing import Any, Dict, List
+from typing import Any, Dict, List, Set
 
 from pick_objects import Mission
-from service.errors import RequestError
 
 
-def documents_of(mission: Mission, prefix: str = "") -> List[Dict[str, Any]]:
-    """Return the deliveries of a mission as requests, in their order.
+def documents_of(mission: Mission, prefix: str) -> List[Dict[str, Any]]:
+    """Return the deliveries of a mission as requests; those that others wait for come first.
 
     Args:
         mission: The mission.
-        prefix: Begin of their ids, by which they are accepted once; empty: they get new ids.
-
-    Raises:
-        RequestError: If it has what requests do not have.
+        prefix: Begin of their ids, by which they are accepted once.
     """
-    waiting = [delivery.name for delivery in mission.deliveries if delivery.after]
-    if waiting:
-        raise RequestError([f"{mission.name}: {waiting[0]}: after is not supported by the service"])
+    ids = {delivery.name: f"{prefix}-{number}" for number, delivery in enumerate(mission.deliveries, 1)}
+    waiting = list(mission.deliveries)
     documents: List[Dict[str, Any]] = []
-    for number, delivery in enumerate(mission.deliveries, 1):
+    done: Set[str] = set()
+    while waiting:  # a mission has no cycles
+        delivery = next(each for each in waiting if done.issuperset(each.after))
+        waiting.remove(delivery)
+        done.add(delivery.name)
         description = {"object": delivery.object_name, "from": delivery.source, "to": delivery.destination}
-        document: Dict[str, Any] = {
-            "category": "deliver",
-            "description": description,
-            "requester": mission.name[:200],
-            "labels": [delivery.name[:200]],
-        }
-        if prefix:
-            document["id"] = f"{prefix}-{number}"
-        documents.append(document)
+        documents.append(
+            {
+                "id": ids[delivery.name],
+                "category": "deliver",
+                "description": description,
+                "requester": mission.name[:200],
+                "labels": [delivery.name[:200]],
+                "after": [ids[name] for name in delivery.after],
+            }
+        )
     return documents

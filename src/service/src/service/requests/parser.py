@@ -17,7 +17,7 @@ MAX_AHEAD = 366 * 86400.0
 # By how much a deadline may lie in the past: clocks differ [s].
 TOLERANCE = 1.0
 KEYS = (
-    *("id", "category", "description", "text", "priority", "requester", "labels", "repeat"),
+    *("id", "category", "description", "text", "priority", "requester", "labels", "repeat", "after"),
     *("unix_millis_request_time", "unix_millis_earliest_start_time", "unix_millis_deadline"),
     *("by", "not_before"),
 )
@@ -68,13 +68,15 @@ class RequestParser:
         priority = self._priority(document.get("priority", 0))
         earliest = self._time(document, "unix_millis_earliest_start_time", "not_before")
         deadline = self._time(document, "unix_millis_deadline", "by")
-        labels = self._labels(document.get("labels", []))
+        labels, after = (self._texts(key, document.get(key, [])) for key in ("labels", "after"))
         requester, repeat = self._text(document, "requester"), self._text(document, "repeat")
         self._text(document, "id")
         earliest = self._check_times(earliest, deadline, repeat)
         if self.problems:
             raise RequestError(self.problems)
-        return TaskRequest(description, priority, earliest, deadline, self.now, repeat, requester, labels)
+        return TaskRequest(
+            description, priority, earliest, deadline, self.now, repeat, requester, labels, after
+        )
 
     def _with_text(self, document: Mapping[str, Any]) -> Mapping[str, Any]:
         if "text" not in document:
@@ -171,10 +173,10 @@ class RequestParser:
             return ""
         return value
 
-    def _labels(self, value: Any) -> Any:
+    def _texts(self, key: str, value: Any) -> Any:
         is_list = isinstance(value, list) and len(value) <= MAX_LABELS
         if not is_list or any(not isinstance(each, str) or len(each) > MAX_TEXT for each in value):
-            self.problems.append(f"labels: expected at most {MAX_LABELS} texts of {MAX_TEXT} characters")
+            self.problems.append(f"{key}: expected at most {MAX_LABELS} texts of {MAX_TEXT} characters")
             return ()
         return tuple(value)
 

@@ -109,6 +109,7 @@ class TaskRequest:
         repeat: Cron expression of its repetitions, in local time; empty: once.
         requester: Who asks for it.
         labels: Texts that are kept with it.
+        after: Ids of tasks that must be completed before.
     """
 
     description: Description
@@ -119,6 +120,7 @@ class TaskRequest:
     repeat: str = ""
     requester: str = ""
     labels: Tuple[str, ...] = ()
+    after: Tuple[str, ...] = ()
 
     @property
     def object_name(self) -> str:
@@ -145,6 +147,7 @@ def request_to_json(request: TaskRequest) -> Dict[str, Any]:
         "repeat": request.repeat,
         "requester": request.requester,
         "labels": list(request.labels),
+        "after": list(request.after),
     }
     return {name: value for name, value in document.items() if value not in (None, "", [])}
 
@@ -164,6 +167,7 @@ def request_from_json(document: Mapping[str, Any]) -> TaskRequest:
         document.get("repeat", ""),
         document.get("requester", ""),
         tuple(document.get("labels", ())),
+        tuple(document.get("after", ())),
     )
 
 

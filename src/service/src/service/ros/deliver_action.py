@@ -1,6 +1,7 @@
 """Requests over ROS: the action ``deliver``, services of pick_objects, and a topic."""
 
 import json
+import uuid
 from typing import Any, Dict, List
 
 import rospy
@@ -80,7 +81,8 @@ class RosRequests:
         if goal.mission:
             if goal.deliveries:
                 raise MissionError("a goal holds either a mission or deliveries, not both")
-            return documents_of(parse_mission(goal.mission, self._mission.places))
+            prefix = f"goal-{uuid.uuid4().hex[:12]}"
+            return documents_of(parse_mission(goal.mission, self._mission.places), prefix)
         if not goal.deliveries:
             raise MissionError("the goal holds neither a mission nor deliveries")
         return [_document(delivery) for delivery in goal.deliveries]

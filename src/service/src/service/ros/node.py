@@ -47,7 +47,7 @@ class ServiceNode:
         self._mission, self._documents = self._read_mission()
         self._map: Optional[OccupancyGrid] = None
         subscribe("map", OccupancyGridArrays, self._keep_map, queue_size=1)
-        self._required: Dict[str, Callable[[], object]] = {
+        self._required: Dict[str, Callable[[], bool]] = {
             f"a map on {rospy.resolve_name('map')}": lambda: self._map is not None
         }
         for name in map(rospy.resolve_name, self._settings.wait_for.split()):
@@ -122,7 +122,7 @@ class ServiceNode:
             if problem:
                 fail(problem)
 
-    def _wait_for(self, required: Dict[str, Callable[[], object]]) -> None:
+    def _wait_for(self, required: Dict[str, Callable[[], bool]]) -> None:
         """Wait for what is required; end the node if it does not come."""
         seconds = self._settings.server_timeout
         deadline = time.monotonic() + seconds
@@ -138,8 +138,11 @@ class ServiceNode:
 
 def _settings() -> Tuple[NodeSettings, ServiceSettings, EnergySettings]:
     names = {name for kind in KINDS for name in kind.__dataclass_fields__}
-    read = [read_settings(kind, ignore=names - set(kind.__dataclass_fields__)) for kind in KINDS]
-    return read[0], read[1], read[2]
+    return (
+        read_settings(NodeSettings, ignore=names),
+        read_settings(ServiceSettings, ignore=names),
+        read_settings(EnergySettings, ignore=names),
+    )
 
 
 def _origin(latest: float) -> float:
