@@ -1,10 +1,7 @@
 """Settings of the service."""
 
-import math
 from dataclasses import dataclass
-from typing import Optional
 
-from planar import Pose2, SettingsError
 from planar.config.config_file import Section
 from planar.config.parameters import POSITIVE, ZERO_OR_MORE, Interval, at_least, check_parameters, parameter
 
@@ -72,23 +69,6 @@ class NodeSettings:
 
     def __post_init__(self):
         check_parameters(self)
-
-
-def dock_pose(text: str) -> Optional[Pose2]:
-    """Return the pose of a dock; None for an empty text.
-
-    Raises:
-        SettingsError: If it is not three numbers.
-    """
-    if not text.strip():
-        return None
-    try:
-        x, y, yaw = (float(word) for word in text.replace(",", " ").split())
-    except ValueError:
-        raise SettingsError(f"dock: '{text}' is no pose; expected x y yaw [m, rad]") from None
-    if not all(map(math.isfinite, (x, y, yaw))):
-        raise SettingsError(f"dock: '{text}' is no pose; expected finite numbers x y yaw [m, rad]")
-    return Pose2(x, y, yaw)
 
 
 CONFIG_FILES = {

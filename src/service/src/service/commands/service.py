@@ -1,6 +1,6 @@
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Dict, Optional
+from typing import Dict
 
 from evaluation.options import GraphOptions, MissionOptions
 from supervision.command_line import option
@@ -25,7 +25,6 @@ class Service(GraphOptions, MissionOptions):
         type=Path,
         metavar="FOLDER",
     )
-    dock: Optional[str] = option(None, "pose of the dock in the map, in one word: x,y,yaw", metavar="X,Y,YAW")
     http_port: int = option(0, "port of the HTTP interface (default: a free one)", type=int)
 
     @property
@@ -35,16 +34,13 @@ class Service(GraphOptions, MissionOptions):
     def run(self) -> int:
         from evaluation.ros.run_modes import run_until_interrupted
         from headless_mission.inputs import read_mission
-        from service.config import dock_pose
 
-        dock = dock_pose(self.dock or "")
         places = read_mission(self).places
         launch = self.launch(
             "service.launch",
             **self.files(),
             **self._start(),
             state_folder=self.state.resolve(),
-            dock="" if dock is None else f"{dock.x} {dock.y} {dock.yaw}",
             http_port=self.http_port,
         ).with_respawn(*RESPAWNED)
         hint = f"send requests with ./scripts/request.sh --state {self.state}; Ctrl-C ends"

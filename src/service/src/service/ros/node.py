@@ -11,6 +11,7 @@ import rospy
 
 from pick_objects import Mission, load_mission
 from planar import OccupancyGrid, Pose2
+from planar.geometry.pose import pose_of_text
 from planar.maps.places import load_places, unreachable_reason
 from planar_ros.lockstep import LockstepClient
 from planar_ros.messages.conversion import OccupancyGridArrays, grid_from_msg
@@ -18,7 +19,7 @@ from planar_ros.messages.validation import subscribe
 from planar_ros.node.parameters import read_settings
 from planar_ros.node.readiness import NodeReadiness, ReadinessMonitor
 from planar_ros.node.runner import fail, run
-from service.config import EnergySettings, NodeSettings, ServiceSettings, dock_pose
+from service.config import EnergySettings, NodeSettings, ServiceSettings
 from service.host import ServiceHost
 from service.http.server import HttpServer
 from service.journal import Journal
@@ -92,7 +93,7 @@ class ServiceNode:
         return self._host.service
 
     def _make(self, journal: Journal) -> RequestService:
-        dock = dock_pose(self._settings.dock)
+        dock = pose_of_text(self._settings.dock, "~dock") if self._settings.dock else None
         assert self._map is not None
         staging = None if dock is None else dock @ Pose2(self._settings.staging_distance, 0.0, math.pi)
         around = PlanningModel(GridTravelTimes(self._map, self._settings.speed), self._energy, staging)
