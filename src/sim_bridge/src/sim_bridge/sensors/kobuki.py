@@ -1,7 +1,7 @@
 """Sensors of a Kobuki base: bumper, cliff sensors and wheel drops (kobuki_gazebo_plugins)."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Dict, FrozenSet, Optional
 
 import numpy as np
@@ -45,7 +45,7 @@ class KobukiReading:
     bumpers: FrozenSet[int] = frozenset()
     cliffs: FrozenSet[int] = frozenset()
     dropped: FrozenSet[int] = frozenset()
-    power: Optional[PowerReading] = None
+    power: Optional[PowerReading] = field(default=None, compare=False)
 
 
 @dataclass(frozen=True, eq=False)
