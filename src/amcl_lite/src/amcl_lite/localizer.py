@@ -22,7 +22,7 @@ from amcl_lite.filter.statistics import best_cluster, mean_and_covariance
 from amcl_lite.motion.motion_model import motion_model_of
 from amcl_lite.motion.update_policy import UpdatePolicy
 from amcl_lite.recovery.hypotheses import find_hypotheses
-from amcl_lite.recovery.pose_search import PoseSearch, TrackedPose
+from amcl_lite.recovery.pose_search import LastEstimate, PoseSearch
 from amcl_lite.recovery.quality import LostDetector, ScanQuality
 from amcl_lite.sensor.beams import Beams, all_beams, evenly_spaced_beams
 from amcl_lite.sensor.scan_likelihood import ScanLikelihood
@@ -189,7 +189,7 @@ class Localizer:
         """
         if not base_in_odom.is_in_range():
             raise LocalizationError("the odometry pose is not finite or out of range")
-        scan = self._no_return.limited(scan)
+        scan = scan if self._settings.strict_compat else self._no_return.limited(scan)
         beams = evenly_spaced_beams(scan, self._settings)
         self._base_in_odom = base_in_odom
         estimate = None
@@ -233,15 +233,14 @@ class Localizer:
         self._update_policy = UpdatePolicy()
         self._updates = 0
         self._matched_spread: Optional[np.ndarray] = None
-        self._last_estimate: Optional[TrackedPose] = None
+        self._last_estimate: Optional[LastEstimate] = None
         # The last estimate, if it was confirmed or continues a confirmed one.
-        self._track: Optional[TrackedPose] = None
+        self._track: Optional[LastEstimate] = None
 
     def _learn_no_return(self, base_in_odom: Pose2, scan: Scan) -> None:
         """Learn from scans made at different places, between which no wall stays at the same distance."""
         base_before = self._update_policy.updated_at
-        is_elsewhere = base_before is None or base_before.distance_to(base_in_odom) > _ELSEWHERE
-        if is_elsewhere and not self._settings.strict_compat:
+        if base_before is None or base_before.distance_to(base_in_odom) > _ELSEWHERE:
             self._no_return.add(scan.ranges)
 
     def _move(self, base_now: Pose2) -> None:
@@ -280,15 +279,14 @@ class Localizer:
         if self._settings.refine_pose:
             ends_xy = all_beams(scan, self._settings).ends_xy
             base_in_map = match_scan(base_in_map, covariance, ends_xy, self._likelihood.field)
-            if self._search.is_doubtful(base_in_map, base_in_odom, beams, self._track):
+            if self._search.needs_search(base_in_map, base_in_odom, beams, self._track):
                 base_in_map = self._searched(base_in_map, cluster, base_in_odom, ends_xy, beams)
             self._matched_spread = covariance
         if cluster is not self.particles:
             _, covariance = mean_and_covariance(self.particles)
         self._odom_in_map = base_in_map @ base_in_odom.inverse()
-        self._last_estimate = TrackedPose(self._odom_in_map, base_in_odom)
-        if self._track is not None:
-            self._track = self._last_estimate
+        self._last_estimate = LastEstimate(self._odom_in_map, base_in_odom)
+        self._track = self._track and self._last_estimate
         self._covariance = covariance
         return Estimate(base_in_map, self._covariance)
 

@@ -37,7 +37,7 @@ _MIN_ODDS = 1e-9
 
 
 @dataclass(frozen=True)
-class TrackedPose:
+class LastEstimate:
     """An estimate, from which odometry predicts the next one.
 
     Attributes:
@@ -77,8 +77,8 @@ class PoseSearch:
         """Evaluate the fit of a scan at a pose."""
         return scan_quality(base_in_map, beams, self._field, self._grid)
 
-    def is_doubtful(
-        self, base_in_map: Pose2, base_in_odom: Pose2, beams: Beams, track: Optional[TrackedPose]
+    def needs_search(
+        self, base_in_map: Pose2, base_in_odom: Pose2, beams: Beams, track: Optional[LastEstimate]
     ) -> bool:
         """Whether a pose leaves the track, or the scan does not confirm it."""
         if track is not None and track.is_left(base_in_map, base_in_odom):

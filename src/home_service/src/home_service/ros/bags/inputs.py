@@ -58,7 +58,7 @@ def find_inputs(recording: Recording) -> ReplayInputs:
 
     Raises:
         NoResultError: There are no scans, or several topics with scans and none is /scan.
-        BagError: The bag is broken before its first scan, or the base cannot be told from other frames.
+        BagError: The bag is broken before its first scan, or the base is one of several moving frames.
     """
     path, topics = recording.paths[0], recording.topics_of(LASER_SCAN)
     if len(topics) > 1 and SCAN in topics:
