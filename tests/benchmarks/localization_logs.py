@@ -22,10 +22,10 @@ from helpers.localization_cases import FRAMES, installed_nodes
 from helpers.lockstep import Master, Player
 
 from planar import OccupancyGrid, Pose2, wrap
+from planar.geometry.no_return import NoReturnDetector
 from planar_ros.bags.scan_log import LoggedScan, ScanLog
 from slam_lite.config import MapperSettings
 from slam_lite.mapper import Mapper, ranges_of
-from planar.geometry.no_return import NoReturnDetector
 from slam_lite.rendering import Evidence, beams_of, render_in_bands
 from slam_lite.scan_trajectory import ScanTrajectory
 
