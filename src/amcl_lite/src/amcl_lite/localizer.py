@@ -22,7 +22,7 @@ from amcl_lite.filter.statistics import best_cluster, mean_and_covariance
 from amcl_lite.motion.motion_model import motion_model_of
 from amcl_lite.motion.update_policy import UpdatePolicy
 from amcl_lite.recovery.hypotheses import find_hypotheses
-from amcl_lite.recovery.pose_search import ConfirmedPose, PoseSearch
+from amcl_lite.recovery.pose_search import LastEstimate, PoseSearch
 from amcl_lite.recovery.quality import LostDetector, ScanQuality
 from amcl_lite.sensor.beams import Beams, all_beams, evenly_spaced_beams
 from amcl_lite.sensor.scan_likelihood import ScanLikelihood
@@ -189,7 +189,7 @@ class Localizer:
         """
         if not base_in_odom.is_in_range():
             raise LocalizationError("the odometry pose is not finite or out of range")
-        scan = self._no_return.limited(scan)
+        scan = scan if self._settings.strict_compat else self._no_return.limited(scan)
         beams = evenly_spaced_beams(scan, self._settings)
         self._base_in_odom = base_in_odom
         estimate = None
@@ -233,14 +233,14 @@ class Localizer:
         self._update_policy = UpdatePolicy()
         self._updates = 0
         self._matched_spread: Optional[np.ndarray] = None
-        self._estimated_at: Optional[Pose2] = None
-        self._confirmed: Optional[ConfirmedPose] = None
+        self._last_estimate: Optional[LastEstimate] = None
+        # The last estimate, if it was confirmed or continues a confirmed one.
+        self._track: Optional[LastEstimate] = None
 
     def _learn_no_return(self, base_in_odom: Pose2, scan: Scan) -> None:
         """Learn from scans made at different places, between which no wall stays at the same distance."""
         base_before = self._update_policy.updated_at
-        is_elsewhere = base_before is None or base_before.distance_to(base_in_odom) > _ELSEWHERE
-        if is_elsewhere and not self._settings.strict_compat:
+        if base_before is None or base_before.distance_to(base_in_odom) > _ELSEWHERE:
             self._no_return.add(scan.ranges)
 
     def _move(self, base_now: Pose2) -> None:
@@ -279,23 +279,25 @@ class Localizer:
         if self._settings.refine_pose:
             ends_xy = all_beams(scan, self._settings).ends_xy
             base_in_map = match_scan(base_in_map, covariance, ends_xy, self._likelihood.field)
-            if self._search.is_doubtful(base_in_map, base_in_odom, beams, self._confirmed):
+            if self._search.needs_search(base_in_map, base_in_odom, beams, self._track):
                 base_in_map = self._searched(base_in_map, cluster, base_in_odom, ends_xy, beams)
             self._matched_spread = covariance
         if cluster is not self.particles:
             _, covariance = mean_and_covariance(self.particles)
-        self._odom_in_map, self._estimated_at = base_in_map @ base_in_odom.inverse(), base_in_odom
+        self._odom_in_map = base_in_map @ base_in_odom.inverse()
+        self._last_estimate = LastEstimate(self._odom_in_map, base_in_odom)
+        self._track = self._track and self._last_estimate
         self._covariance = covariance
         return Estimate(base_in_map, self._covariance)
 
     def _searched(
         self, found: Pose2, cluster: ParticleSet, base_in_odom: Pose2, ends_xy: np.ndarray, beams: Beams
     ) -> Pose2:
-        """Search for the pose around the last confirmed one, or around the particles if there is none."""
-        proposals, predicted, confirmed = cluster.poses, None, self._confirmed
-        if confirmed is not None:
-            proposals = confirmed.proposals(base_in_odom, self._motion, self._rng)
-            predicted = confirmed.odom_in_map @ base_in_odom
+        """Search for the pose around the tracked one, or around the particles if there is none."""
+        proposals, predicted = cluster.poses, None
+        if self._track is not None:
+            proposals = self._track.proposals(base_in_odom, self._motion, self._rng)
+            predicted = self._track.predicted(base_in_odom)
         return self._search.best_match(found, cluster.poses, proposals, predicted, ends_xy, beams)
 
     def _evaluate_fit(self, base_in_odom: Pose2, beams: Beams, stamp: float) -> None:
@@ -304,10 +306,8 @@ class Localizer:
         base_in_map = self._odom_in_map @ base_in_odom
         self._quality = self._search.quality(base_in_map, beams)
         self._detector.add(self._quality, stamp)
-        if self.is_lost:
-            self._confirmed = None
-        elif self._quality.confirms_pose and self._estimated_at is not None:
-            self._confirmed = ConfirmedPose(self._odom_in_map, self._estimated_at)
+        if self._quality.confirms_pose and not self.is_lost:
+            self._track = self._last_estimate
         if self._settings.recover_when_lost and self._quality.contradicts_pose:
             self._update_policy.request()  # otherwise a robot at rest would never recover
 

@@ -1,4 +1,4 @@
-"""Search for the pose of a scan near the particles or the last confirmed pose.
+"""Search for the pose of a scan near the particles and near the last estimate.
 
 After a step of a metre, amcl's default noise spreads the particles by decimetres and tenths of a radian, and
 its likelihood, which adds up beams, hardly narrows them: their mean is then farther from the robot's pose
@@ -16,14 +16,14 @@ import numpy as np
 from amcl_lite.filter.particles import equally_weighted
 from amcl_lite.filter.statistics import mean_and_covariance
 from amcl_lite.motion.custom_model import MotionModel
-from amcl_lite.recovery.quality import ScanQuality, scan_quality
+from amcl_lite.recovery.quality import FOUND_ABOVE, ScanQuality, scan_quality
 from amcl_lite.sensor.beams import Beams
 from amcl_lite.sensor.likelihood_field import LikelihoodField
 from amcl_lite.sensor.scan_matching import inverse, match_scan
 from amcl_lite.sensor.sensor_model import mean_fits
 from planar import OccupancyGrid, Pose2, wrap
 
-# A confirmed estimate this far from where odometry leads from the last one is doubtful [m].
+# An estimate this far from where odometry leads from the last one leaves the track [m].
 _JUMP = 0.5
 _DRAWN, _STARTS, _BEAMS_FOR_RANKING = 500, 10, 60
 # Size of the bins of starts of scan matching, and the reach of one as standard deviation [m, m, rad].
@@ -37,8 +37,8 @@ _MIN_ODDS = 1e-9
 
 
 @dataclass(frozen=True)
-class ConfirmedPose:
-    """An estimate that a scan has confirmed, the start of dead reckoning.
+class LastEstimate:
+    """An estimate, from which odometry predicts the next one.
 
     Attributes:
         odom_in_map: Odometry frame in the map.
@@ -47,6 +47,14 @@ class ConfirmedPose:
 
     odom_in_map: Pose2
     base_in_odom: Pose2
+
+    def predicted(self, base_in_odom: Pose2) -> Pose2:
+        """Return the pose in the map to which odometry leads."""
+        return self.odom_in_map @ base_in_odom
+
+    def is_left(self, base_in_map: Pose2, base_in_odom: Pose2) -> bool:
+        """Whether a pose is not where odometry leads."""
+        return self.predicted(base_in_odom).distance_to(base_in_map) > _JUMP
 
     def proposals(self, base_in_odom: Pose2, motion: MotionModel, rng: np.random.Generator) -> np.ndarray:
         """Draw poses (N, 3) in the map by the motion model."""
@@ -69,11 +77,11 @@ class PoseSearch:
         """Evaluate the fit of a scan at a pose."""
         return scan_quality(base_in_map, beams, self._field, self._grid)
 
-    def is_doubtful(
-        self, base_in_map: Pose2, base_in_odom: Pose2, beams: Beams, last: Optional[ConfirmedPose]
+    def needs_search(
+        self, base_in_map: Pose2, base_in_odom: Pose2, beams: Beams, track: Optional[LastEstimate]
     ) -> bool:
-        """Whether a pose is not confirmed by the scan, or not where odometry leads from the ``last`` one."""
-        if last is not None and (last.odom_in_map @ base_in_odom).distance_to(base_in_map) > _JUMP:
+        """Whether a pose leaves the track, or the scan does not confirm it."""
+        if track is not None and track.is_left(base_in_map, base_in_odom):
             return True
         return not self.quality(base_in_map, beams).confirms_pose
 
@@ -97,7 +105,9 @@ class PoseSearch:
             beams: The beams by which a pose is judged.
 
         Returns:
-            ``found`` or the result of scan matching from another pose.
+            ``found`` or the result of scan matching from another pose. One that odometry rules out is
+            returned only if the scan fits there: where the map explains no scan well, as outdoors among
+            bushes, the prediction is better than the least bad fit elsewhere.
         """
         starts = self._starts(np.vstack((proposals, particles)), ends_xy)
         if predicted is not None:
@@ -106,14 +116,18 @@ class PoseSearch:
         mean, covariance = mean_and_covariance(equally_weighted(proposals))
         mean, information = predicted or mean, inverse(covariance + _MATCH_SPREAD)
 
-        def log_probability(pose: Pose2) -> float:
+        best, best_log_odds = predicted or found, -math.inf
+        for pose in matches:
             off = pose.as_array() - mean.as_array()
             off[2] = wrap(float(off[2]))
-            penalty = min(0.5 * float(off @ information @ off), _MAX_PENALTY)
-            probability = np.clip(self.quality(pose, beams).probability, _MIN_ODDS, 1.0 - _MIN_ODDS)
-            return math.log(probability / (1.0 - probability)) - penalty
-
-        return max(matches, key=log_probability)
+            penalty = 0.5 * float(off @ information @ off)
+            probability = self.quality(pose, beams).probability
+            if predicted is not None and penalty > _MAX_PENALTY and probability < FOUND_ABOVE:
+                continue
+            log_odds = _log_odds(probability) - min(penalty, _MAX_PENALTY)
+            if log_odds > best_log_odds:
+                best, best_log_odds = pose, log_odds
+        return best
 
     def _starts(self, poses: np.ndarray, ends_xy: np.ndarray) -> List[Pose2]:
         """The poses that fit best, one in each bin."""
@@ -122,3 +136,8 @@ class PoseSearch:
         bins = np.floor(sorted_poses / _BIN).astype(np.int64)
         best_in_bin = np.unique(bins, axis=0, return_index=True)[1]
         return [Pose2.from_array(pose) for pose in sorted_poses[np.sort(best_in_bin)[:_STARTS]]]
+
+
+def _log_odds(probability: float) -> float:
+    limited = min(max(probability, _MIN_ODDS), 1.0 - _MIN_ODDS)
+    return math.log(limited / (1.0 - limited))

@@ -59,8 +59,8 @@ def main(arguments: Optional[List[str]] = None) -> int:
 
 def _replay(options: AmclReplay) -> int:
     settings = load_settings(NodeSettings, options.config, also_known=official_names(InitialPose))
-    log = ScanLog(options.bag, options.scan_topic, settings.base_frame, settings.odom_frame, warn)
     localizer = _localizer(options, settings)
+    log = ScanLog(options.bag, options.scan_topic, settings.base_frame, settings.odom_frame, warn)
     stamped_poses: List[Tuple[float, ...]] = []
 
     def update(logged: LoggedScan) -> None:

@@ -1,7 +1,7 @@
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Optional, Sequence, Tuple
+from typing import Dict, Mapping, Optional, Sequence, Tuple
 
 from evaluation.options import ROOT, LaunchPlan, RunOptions
 from supervision.command_line import argument, option, seed
@@ -46,13 +46,16 @@ class Replay(RunOptions):
         return "replay" if self.estimator == "recorded" else None
 
     def run(self) -> int:
-        from home_service.ros.replaying import open_recording, replay
+        from home_service.ros.replaying import inputs_of, open_recording, replay
 
         recording = open_recording(self.bags, needs_scans=self.estimator != "recorded")
-        launch = self._launch(recording.paths)
+        inputs: Dict[str, str] = {}
+        if self.estimator != "recorded":
+            inputs = inputs_of(recording, needs_odometry=self.estimator == "amcl")
+        launch = self._launch(recording.paths, inputs)
         return replay(self, launch, recording, saves_map=self.estimator == "slam", stem=self.save)
 
-    def _launch(self, bags: Sequence[Path]) -> LaunchPlan:
+    def _launch(self, bags: Sequence[Path], inputs: Mapping[str, str]) -> LaunchPlan:
         from evaluation.recording_plan import recording_plan
         from planar import load_map
 
@@ -62,6 +65,7 @@ class Replay(RunOptions):
             load_map(self.map)  # so that a mistake is reported before anything is started
         x, y, yaw = self.start
         arguments = {
+            **inputs,
             "bags": os.pathsep.join(str(path.resolve()) for path in bags),
             "estimator": self.estimator,
             "map_file": self.map.resolve(),

@@ -1,7 +1,7 @@
 """Playback of a recording to localization or mapping."""
 
 from pathlib import Path
-from typing import Optional, Sequence
+from typing import Dict, Optional, Sequence
 
 from evaluation.consumers.referee import Referee
 from evaluation.consumers.run_recorder import RunRecorder
@@ -11,7 +11,9 @@ from evaluation.options import LaunchPlan, RunOptions
 from evaluation.ros.run import Run
 from evaluation.verdict import Verdict
 from home_service.ros.bags import BROKEN, ENDED
+from home_service.ros.bags.inputs import find_inputs
 from home_service.ros.mapping import save_map
+from planar import OCCUPIED, load_map
 from planar_ros.bags.bag_reader import LASER_SCAN, BagError
 from planar_ros.bags.recording import Recording
 from supervision.display import Display
@@ -36,6 +38,23 @@ def open_recording(paths: Sequence[Path], needs_scans: bool) -> Recording:
     return recording
 
 
+def inputs_of(recording: Recording, needs_odometry: bool) -> Dict[str, str]:
+    """Find and print the frames and topics of a recording.
+
+    Returns:
+        Arguments of replay.launch.
+
+    Raises:
+        BagError: They cannot be found, or odometry is missing.
+    """
+    inputs = find_inputs(recording)
+    Display().print(str(inputs))
+    if needs_odometry and not inputs.frames.has_odometry:
+        path = recording.paths[0]
+        raise BagError(f"{path}: no odometry: only a robot with odometry can be localized; try --with slam")
+    return inputs.launch_arguments()
+
+
 def replay(
     options: RunOptions, launch: LaunchPlan, recording: Recording, saves_map: bool, stem: Optional[Path]
 ) -> int:
@@ -57,7 +76,10 @@ def replay(
         run.result.missing += recording.truncations
         failure = _play(run, playback)
         if failure is None and saves_map:
-            display.print(f"map saved in {save_map(run, stem)}")
+            path = save_map(run, stem)
+            display.print(f"map saved in {path}")
+            if not (load_map(path).cells == OCCUPIED).any():
+                failure = "no useful map: no scan has shown an obstacle"
         verdict = Verdict(failure is None, failure or f"{recording.end - recording.start:.1f} s replayed")
         return run.conclude(verdict, bags=[str(path) for path in recording.paths])
 

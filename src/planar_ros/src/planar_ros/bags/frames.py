@@ -40,7 +40,7 @@ class BagFrames:
     substitution: str = ""
 
 
-class FrameTree:
+class TransformTree:
     """Transforms of a bag as a tree: the parent and the first transform of each frame, and which ones move.
 
     Attributes:
@@ -77,8 +77,10 @@ class FrameTree:
 
 
 def read_tree(
-    source: MessageSource, topics: Sequence[str], is_enough: Callable[[FrameTree], bool] = lambda tree: False
-) -> FrameTree:
+    source: MessageSource,
+    topics: Sequence[str],
+    is_enough: Callable[[TransformTree], bool] = lambda tree: False,
+) -> TransformTree:
     """Read the transforms of a bag until there are enough; a broken bag up to its broken part.
 
     Args:
@@ -89,7 +91,7 @@ def read_tree(
     Returns:
         The transforms read.
     """
-    tree = FrameTree()
+    tree = TransformTree()
     with contextlib.suppress(BagError):  # raised again when the messages are read up to the broken part
         for played in source.messages(topics):
             tree.add(played.message)
@@ -131,7 +133,7 @@ def find_frames(source: MessageSource, odom: str, base: str, laser: str) -> BagF
     return BagFrames(parent, found_base, True, reason)
 
 
-def _frames_at_rest(tree: FrameTree, odom: str, base: str, laser: str) -> BagFrames:
+def _frames_at_rest(tree: TransformTree, odom: str, base: str, laser: str) -> BagFrames:
     """Frames of a bag in which nothing moves: the base asked for, or the frame on which the laser is."""
     above_laser = [frame for frame in tree.frames_from(laser)[1:] if frame not in (odom, _MAP_FRAME)]
     if base in tree.frames or not above_laser:
@@ -141,7 +143,7 @@ def _frames_at_rest(tree: FrameTree, odom: str, base: str, laser: str) -> BagFra
     return BagFrames(odom, found, odom in tree.frames_from(found), reason)
 
 
-def _candidates(tree: FrameTree, odom: str, base: str, laser: str) -> List[Edge]:
+def _candidates(tree: TransformTree, odom: str, base: str, laser: str) -> List[Edge]:
     """Edges that may be odometry: of the first of these criteria that any edge meets."""
     moving = tree.moving_edges()
     moving_parents = {child for _, child in moving}

@@ -67,7 +67,7 @@ class ScanLog:
 
     Raises:
         NoResultError: If the bag has no scans on the topic.
-        BagError: If the bag is unreadable, has topics of another type, or the base cannot be told from other
+        BagError: If the bag is unreadable, has topics of another type, or the base is one of several
             moving frames.
     """
 

@@ -16,10 +16,11 @@ from std_msgs.msg import Header, String
 from tf2_msgs.msg import TFMessage
 
 from home_service.ros.bags import BROKEN, ENDED, PLAYING, bags_of
+from planar import Pose2
 from planar_ros.bags.bag_reader import LASER_SCAN, TF_STATIC, BagError, RecordedMessage
 from planar_ros.bags.recording import Recording
 from planar_ros.lockstep.ticker import PROGRESS_TOPIC
-from planar_ros.messages.conversion import frame_name, time_of
+from planar_ros.messages.conversion import frame_name, time_of, transform_msg
 from planar_ros.node.runner import run
 from sim_bridge.pacing import Pacer
 
@@ -52,6 +53,7 @@ class BagPlayer:
         if LASER_SCAN not in types.values():
             topics = ", ".join(sorted(types)) or "none"
             raise BagError(f"{self._recording.paths[0]}: no laser scans; topics: {topics}")
+        self._assumed = [pair.split(">") for pair in rospy.get_param("~assumed", "").split()]
         self._scans = [topic for topic in self._topics if types[topic] == LASER_SCAN]
         self._publishers = {
             topic: rospy.Publisher(
@@ -118,14 +120,21 @@ class BagPlayer:
 
     def _publish_static(self) -> None:
         """Publish all static transforms at once: a latched topic keeps only its last message."""
-        if TF_STATIC not in self._publishers:
+        if not self._assumed and TF_STATIC not in self._publishers:
             return
         together = {
             transform.child_frame_id: transform
             for played in self._recording.messages({TF_STATIC})
             for transform in played.message.transforms
         }
-        self._publishers[TF_STATIC].publish(TFMessage(list(together.values())))
+        assumed = [
+            transform_msg(Pose2(), parent, child, time_of(self._recording.start))
+            for parent, child in self._assumed
+        ]
+        publisher = self._publishers.setdefault(
+            TF_STATIC, rospy.Publisher(TF_STATIC, TFMessage, queue_size=100, latch=True)
+        )
+        publisher.publish(TFMessage([*together.values(), *assumed]))
 
     def _wait_for_subscribers(self) -> None:
         """Wait until a node subscribes to the scans, or for half a minute."""
