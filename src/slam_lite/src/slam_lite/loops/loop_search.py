@@ -49,15 +49,15 @@ def find_loop_closure(
     place, recent = candidate.place, candidate.recent
     first_recent = recent - candidate.recent_keyframes + 1
     place_clouds = _clouds_around(place, candidate.scale, first_recent, poses, clouds)
-    local_map.clear(Pose2())
-    for posed in place_clouds:
-        local_map.add(*posed)
     recent_clouds = [(clouds[i], relative_pose(poses, recent, i)) for i in range(first_recent, recent + 1)]
     recent_cloud = downsampled(static_points(recent_clouds), _MAX_POINTS)
     if len(recent_cloud) < _MIN_POINTS:
         return None
-    min_score = 0.7 * settings.closure_min_response
-    sample, layer = downsampled(recent_cloud, 200), local_map.layer_for(recent_cloud)
+    local_map.clear(Pose2())
+    layer = local_map.layer_for(recent_cloud)
+    for cloud, pose in place_clouds:
+        local_map.add(cloud, pose, layer is not local_map)
+    min_score, sample = 0.7 * settings.closure_min_response, downsampled(recent_cloud, 200)
     peak = search_branch_and_bound(sample, layer, candidate.guess, candidate.window, min_score, apart=0.6)
     if peak is None or not peak.is_unique or (candidate.is_recognized and peak.degenerate_direction.any()):
         return None
