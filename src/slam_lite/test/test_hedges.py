@@ -1,4 +1,4 @@
-"""Loop closures between hedges, which beams partly pass: they contradict themselves wherever they are seen from."""
+"""Loop closures between hedges, which beams partly pass, so that scans of them contradict each other."""
 
 import math
 
@@ -59,7 +59,8 @@ def path():
 def log(seed):
     """Odometry, scan and true pose, scan by scan."""
     rng = np.random.default_rng(seed)
-    inner, outer, angles = hedges(rng, 3.0), hedges(rng, 6.0), np.linspace(-0.5 * math.pi, 0.5 * math.pi, BEAMS)
+    inner, outer = hedges(rng, 3.0), hedges(rng, 6.0)
+    angles = np.linspace(-0.5 * math.pi, 0.5 * math.pi, BEAMS)
     in_odom, last = Pose2(), None
     for number, pose in enumerate(path()):
         motion = Pose2() if last is None else last.inverse() @ pose

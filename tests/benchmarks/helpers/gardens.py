@@ -4,10 +4,9 @@ from typing import List, Sequence, Tuple
 
 import numpy as np
 
+from helpers.sites import Campus
 from planar import OCCUPIED, OccupancyGrid, Pose2
 from planar.geometry.ray_casting import cast_rays
-
-from helpers.sites import Campus
 
 # Along both sides of a path: distance of hedges from its middle, their thickness, the length of a section and
 # of the gap after it [m].

@@ -96,7 +96,7 @@ class RecentKeyframes:
 
         Args:
             window_keyframes: Largest number of keyframes in the window.
-            is_coarse_searched: Whether the matcher searches the coarse map by itself (see ``LocalMap.add``).
+            is_coarse_searched: Whether the matcher searches the coarse map alone (see ``LocalMap.add``).
         """
         self.local_map = long_range_map()
         self._is_coarse_searched = is_coarse_searched

@@ -93,7 +93,7 @@ class LocalMap:
         Args:
             cloud: Points of the scan, in the base frame.
             base_pose: Pose of the base in the frame of the map.
-            is_coarse_searched: Whether the coarse map is searched by itself; otherwise it gets only the points
+            is_coarse_searched: Whether the coarse map is searched alone; otherwise it gets only the points
                 outside of this one, which is faster.
         """
         self._add(cloud, base_pose, 0.0)
@@ -272,7 +272,9 @@ def _grown(array: np.ndarray, needed: int) -> np.ndarray:
 
 
 @numba.njit(cache=True, nogil=True)
-def _add(nearest, likelihood, map_points, map_normals, count, points, normals, x, y, yaw, resolution, kernel, inner):
+def _add(
+    nearest, likelihood, map_points, map_normals, count, points, normals, x, y, yaw, resolution, kernel, inner
+):
     c, s = math.cos(yaw), math.sin(yaw)
     side = len(nearest)
     reach, border = _REACH_CELLS, BORDER_CELLS + _REACH_CELLS
