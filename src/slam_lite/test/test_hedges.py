@@ -98,5 +98,5 @@ def test_a_loop_between_hedges_is_closed(seed):
         off = loop.second_in_first.as_array() - true.as_array()
         off[2] = wrap(off[2])
         is_near = math.hypot(off[0], off[1]) < 0.5 and abs(off[2]) < 0.05
-        # along a smooth section the position is not measured, which the information says
+        # along a smooth section the information does not include the position
         assert is_near or off @ loop.information @ off < 16.0

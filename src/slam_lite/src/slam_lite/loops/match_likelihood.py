@@ -1,8 +1,8 @@
 """Likelihood of a match of two segments, judged by how well each of them agrees with itself.
 
 Hedges, fences, glass and people contradict each other at the right place as well: a share of their points is
-seen through or not matched. How large it is appears in the scans of one segment alone, every other one compared
-with those between. A fixed bound would reject all matches outdoors, or accept too many indoors.
+seen through or not matched. The scans of one segment alone show how large it is, every other one compared with
+those between. A fixed bound would reject all matches outdoors, or accept too many indoors.
 """
 
 import math
@@ -21,7 +21,7 @@ from slam_lite.point_cloud import downsampled, merge_clouds
 # generated sites, between places that are known to be the same or to differ.
 _CONFLICT_RIGHT, _CONFLICT_WRONG = (0.0, 0.6), (1.3, 0.9)
 _RESPONSE_RIGHT, _RESPONSE_WRONG = (1.0, 0.1), (0.7, 0.17)
-# Conflict at the same place of segments that agree with themselves: of an object that moved, or of a wall's edge.
+# Conflict at the same place of segments that agree with themselves: of an object that moved, or of an edge.
 _LEAST_CONFLICT = 0.0125
 _MAX_POINTS = 500
 _FIXED = 1e9 * np.eye(3)
