@@ -1,8 +1,8 @@
 """Likelihood of a match of two segments, judged by how well each of them agrees with itself.
 
-Hedges, fences, glass and people contradict each other at the right place as well: a share of their points is
-seen through or not matched. The scans of one segment alone show how large it is, every other one compared with
-those between. A fixed bound would reject all matches outdoors, or accept too many indoors.
+Hedges, fences, glass and people contradict each other at the right place as well: a share of their points
+is seen through or not matched. The scans of one segment alone show how large it is, every other one compared
+with those between. A fixed bound would reject all matches outdoors, or accept too many indoors.
 """
 
 import math
