@@ -36,7 +36,7 @@ PERSON_RADIUS, PERSON_SPEED, PERSON_RANGES, PERSON_SCANS, PERSON_ODDS = 0.25, 1.
 SLIP_DISTANCE, SLIP_TURN = 0.3, 0.15
 RELATION_STEP, REVISIT_RADIUS, REVISIT_SECONDS = 1.0, 2.0, 60.0
 SITE_SIZE, SITE_SLOTS = (500.0, 300.0), (3, 2)
-# A site with hedges, and largest turn between two of its scans [rad], as in logs of key scans.
+# A site with hedges, and largest turn between two of its scans [rad], as in logs of sparse scans.
 GARDEN_SIZE, GARDEN_SLOTS, MAX_TURN = (260.0, 180.0), (2, 2), 0.5
 # Pauses of the recording: number, duration [s], and how many scans of the drive are missing in each.
 PAUSES, PAUSE_SECONDS, PAUSE_SCANS = 3, (60.0, 240.0), (1, 6)

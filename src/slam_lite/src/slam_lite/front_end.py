@@ -91,13 +91,15 @@ class RecentKeyframes:
     When it holds ``window_keyframes`` keyframes, the older half is removed.
     """
 
-    def __init__(self, window_keyframes: int):
+    def __init__(self, window_keyframes: int, is_coarse_searched: bool = True):
         """Create an empty window.
 
         Args:
             window_keyframes: Largest number of keyframes in the window.
+            is_coarse_searched: Whether the matcher searches the coarse map alone (see ``LocalMap.add``).
         """
         self.local_map = long_range_map()
+        self._is_coarse_searched = is_coarse_searched
         self._window_keyframes = window_keyframes
         self._window: Deque[Tuple[PointCloud, Pose2]] = deque()
         self._last_coverage: Optional[AngularCoverage] = None
@@ -115,11 +117,11 @@ class RecentKeyframes:
                 self._window.popleft()
             self.local_map.clear(base_in_track)
             for old, old_in_track in self._window:
-                self.local_map.add(old, old_in_track)
+                self.local_map.add(old, old_in_track, self._is_coarse_searched)
         elif not self._window:
             self.local_map.clear(base_in_track)
         self._window.append((cloud, base_in_track))
-        self.local_map.add(cloud, base_in_track)
+        self.local_map.add(cloud, base_in_track, self._is_coarse_searched)
 
     def update_around(self, base_in_track: Pose2) -> None:
         """Do nothing: the keyframes around the robot are the last ones."""

@@ -80,7 +80,7 @@ class Mapper:
         """
         self._settings = settings
         self._deferred = deferred
-        self._recent = RecentKeyframes(settings.window_keyframes)
+        self._recent = _recent_keyframes(settings)
         self._front_end = FrontEnd(settings, self._recent)
         self._back_end = BackEnd(settings)
         self._beams: List[ScanBeams] = []
@@ -271,7 +271,7 @@ class Mapper:
 
     def _start_trajectory(self, base_in_track: Pose2) -> None:
         self._keyframe_in_track = None
-        self._recent = RecentKeyframes(self._settings.window_keyframes)
+        self._recent = _recent_keyframes(self._settings)
         self._front_end = FrontEnd(self._settings, self._recent, base_in_track)
 
     def _in_last_keyframe(self, base_in_track: Pose2) -> Optional[Pose2]:
@@ -316,6 +316,11 @@ class Mapper:
             self._base_in_keyframe,
             is_new_keyframe,
         )
+
+
+def _recent_keyframes(settings: MapperSettings) -> RecentKeyframes:
+    """An empty window; custom matchers may search the coarse map, which the default one does not."""
+    return RecentKeyframes(settings.window_keyframes, bool(settings.matcher_plugin))
 
 
 def ranges_of(scan: Scan, settings: MapperSettings, no_return: NoReturnDetector) -> Tuple[float, float]:

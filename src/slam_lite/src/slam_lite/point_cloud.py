@@ -69,11 +69,26 @@ def merge_clouds(parts: Iterable[Tuple[PointCloud, Pose2]]) -> PointCloud:
     Returns:
         Cloud in the common frame.
     """
-    points, normals = [], []
+    parts = list(parts)
+    points = np.empty((sum(len(cloud) for cloud, _ in parts), 2), dtype=np.float32)
+    normals, end = np.empty_like(points), 0
     for cloud, pose in parts:
-        points.append(pose.transform_points(cloud.points_xy))
-        normals.append(Pose2(0.0, 0.0, pose.yaw).transform_points(cloud.normals_xy))
-    return PointCloud(np.concatenate(points).astype(np.float32), np.concatenate(normals).astype(np.float32))
+        here, end = end, end + len(cloud)
+        _transform(
+            cloud.points_xy, cloud.normals_xy, pose.x, pose.y, pose.yaw, points[here:end], normals[here:end]
+        )
+    return PointCloud(points, normals)
+
+
+@numba.njit(cache=True, nogil=True)
+def _transform(points, normals, x, y, yaw, new_points, new_normals):
+    """Transform points and normals (N, 2) into the parent frame of a pose."""
+    c, s = math.cos(yaw), math.sin(yaw)
+    for i in range(len(points)):
+        new_points[i, 0] = x + c * points[i, 0] - s * points[i, 1]
+        new_points[i, 1] = y + s * points[i, 0] + c * points[i, 1]
+        new_normals[i, 0] = c * normals[i, 0] - s * normals[i, 1]
+        new_normals[i, 1] = s * normals[i, 0] + c * normals[i, 1]
 
 
 def downsampled(cloud: PointCloud, count: int) -> PointCloud:

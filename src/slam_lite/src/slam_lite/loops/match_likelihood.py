@@ -1,7 +1,7 @@
 """Likelihood of a match of two segments, judged by how well each of them agrees with itself.
 
-Hedges, fences, glass and people contradict each other at the right place as well: a share of their points is
-seen through or not matched. How large it is shows in the scans of one segment alone, every other one compared
+Hedges, fences, glass and people contradict each other at the right place as well: a share of their points
+is seen through or not matched. The scans of one segment alone show how large it is, every other one compared
 with those between. A fixed bound would reject all matches outdoors, or accept too many indoors.
 """
 
@@ -16,12 +16,12 @@ from slam_lite.matching.local_map import LocalMap
 from slam_lite.matching.refinement import refine
 from slam_lite.point_cloud import downsampled, merge_clouds
 
-# Mean and standard deviation, for right and for wrong matches, of the logarithm of the visibility conflict as a
-# multiple of the own one, and of the response as a share of the own one. Measured on a campus and on generated
-# sites, between places that are known to be the same or to differ.
+# Mean and standard deviation, for right and for wrong matches, of the logarithm of the visibility conflict as
+# a multiple of the own one, and of the response as a share of the own one. Measured on a campus and on
+# generated sites, between places that are known to be the same or to differ.
 _CONFLICT_RIGHT, _CONFLICT_WRONG = (0.0, 0.6), (1.3, 0.9)
 _RESPONSE_RIGHT, _RESPONSE_WRONG = (1.0, 0.1), (0.7, 0.17)
-# Conflict of segments without any of their own: of an object that moved, or of a wall's edge.
+# Conflict at the same place of segments that agree with themselves: of an object that moved, or of an edge.
 _LEAST_CONFLICT = 0.0125
 _MAX_POINTS = 500
 _FIXED = 1e9 * np.eye(3)

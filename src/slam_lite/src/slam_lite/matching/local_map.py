@@ -87,13 +87,27 @@ class LocalMap:
         if self.coarse_map is not None:
             self.coarse_map.clear(center)
 
-    def add(self, cloud: PointCloud, base_pose: Pose2) -> None:
+    def add(self, cloud: PointCloud, base_pose: Pose2, is_coarse_searched: bool = True) -> None:
         """Add a scan; points outside of the grid are ignored.
 
         Args:
             cloud: Points of the scan, in the base frame.
             base_pose: Pose of the base in the frame of the map.
+            is_coarse_searched: Whether the coarse map is searched alone; otherwise it gets only the points
+                outside of this one, which is faster.
         """
+        self._add(cloud, base_pose, 0.0)
+        if self.coarse_map is not None:
+            inner = 0.0 if is_coarse_searched else self._reach - 2.0 * _REACH_CELLS * _COARSE_RESOLUTION
+            self.coarse_map._add(interpolated(cloud, 1.5 * self.coarse_map.resolution), base_pose, inner)
+
+    @property
+    def _reach(self) -> float:
+        """Distance from the middle within which points are in this grid [m]."""
+        return (0.5 * len(self.nearest) - BORDER_CELLS - _REACH_CELLS) * self.resolution
+
+    def _add(self, cloud: PointCloud, base_pose: Pose2, inner: float) -> None:
+        """Add the points that are farther than ``inner`` [m] from the middle, in x or in y."""
         needed = self.count + len(cloud)
         if needed > len(self.points_xy):
             self.points_xy = _grown(self.points_xy, needed)
@@ -111,9 +125,8 @@ class LocalMap:
             base_pose.yaw,
             self.resolution,
             _LIKELIHOOD,
+            inner / self.resolution,
         )
-        if self.coarse_map is not None:
-            self.coarse_map.add(interpolated(cloud, 1.5 * self.coarse_map.resolution), base_pose)
 
     @property
     def is_empty(self) -> bool:
@@ -259,7 +272,9 @@ def _grown(array: np.ndarray, needed: int) -> np.ndarray:
 
 
 @numba.njit(cache=True, nogil=True)
-def _add(nearest, likelihood, map_points, map_normals, count, points, normals, x, y, yaw, resolution, kernel):
+def _add(
+    nearest, likelihood, map_points, map_normals, count, points, normals, x, y, yaw, resolution, kernel, inner
+):
     c, s = math.cos(yaw), math.sin(yaw)
     side = len(nearest)
     reach, border = _REACH_CELLS, BORDER_CELLS + _REACH_CELLS
@@ -267,6 +282,8 @@ def _add(nearest, likelihood, map_points, map_normals, count, points, normals, x
         px, py = x + c * points[i, 0] - s * points[i, 1], y + s * points[i, 0] + c * points[i, 1]
         col, row = int(math.floor(px / resolution)), int(math.floor(py / resolution))
         if not (border <= col < side - border and border <= row < side - border):
+            continue
+        if abs(col - 0.5 * side) < inner and abs(row - 0.5 * side) < inner:
             continue
         known = nearest[row, col]
         if (
@@ -281,6 +298,8 @@ def _add(nearest, likelihood, map_points, map_normals, count, points, normals, x
         for r in range(row - reach, row + reach + 1):
             for q in range(col - reach, col + reach + 1):
                 squared = (q + 0.5 - u) ** 2 + (r + 0.5 - v) ** 2
+                if kernel[int(squared)] < likelihood[r, q]:
+                    continue  # the likelihood alone shows that another point is nearer
                 old = nearest[r, q]
                 if old >= 0:
                     du, dv = map_points[old, 0] / resolution, map_points[old, 1] / resolution

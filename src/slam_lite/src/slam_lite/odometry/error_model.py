@@ -38,6 +38,7 @@ class OdometryErrorModel:
         # Normal equations of the bias: of heading by distance and turn, and of distance.
         self._yaw_information, self._distance_information = np.diag(_PRIOR[:2] ** -2), _PRIOR[2] ** -2
         self._yaw_sum, self._distance_sum = np.zeros(2), 0.0
+        self._yaw_bias = np.zeros(2)
         # Sums (2,) of the squared random error, distance and heading, in units of the settings' variance.
         self._squares, self._count = np.full(2, _PRIOR_COUNT), _PRIOR_COUNT
 
@@ -47,7 +48,7 @@ class OdometryErrorModel:
         Args:
             motion: Pose of the base relative to the last scan, from odometry.
         """
-        per_distance, per_turn = np.linalg.solve(self._yaw_information, self._yaw_sum)
+        per_distance, per_turn = self._yaw_bias
         x = motion.x * (1.0 + self._distance_sum / self._distance_information)
         return Pose2(x, motion.y, motion.yaw + per_distance * motion.x + per_turn * motion.yaw)
 
@@ -83,6 +84,7 @@ class OdometryErrorModel:
         regressors = np.array([motion.x, motion.yaw])
         self._yaw_information += np.outer(regressors, regressors) / variance[2]
         self._yaw_sum += regressors * wrap(matched.yaw - motion.yaw) / variance[2]
+        self._yaw_bias = np.linalg.solve(self._yaw_information, self._yaw_sum)
         self._distance_information += motion.x**2 / variance[0]
         self._distance_sum += motion.x * (matched.x - motion.x) / variance[0]
         self._squares += residual[[0, 2]] ** 2 / nominal[[0, 2]]
