@@ -8,7 +8,7 @@ from planar import Pose2
 from planar.elapsed_time import ElapsedTime
 from planar.maps.places import NamedPlace
 from service.config import ServiceSettings
-from service.execution.activities import Docking
+from service.execution.activities import DockingActivity
 from service.execution.executor import TaskExecutor
 from service.execution.robot import RobotEvent, RobotInputs, RobotOrder
 from service.plan.job import CHARGE
@@ -201,7 +201,7 @@ class RequestService:
             self._idle_since = elapsed
         if first is None or first.start > now + 1e-3:
             return None if executor.activity is not None else self._park(now, elapsed)
-        is_docking = isinstance(executor.activity, Docking) and not executor.current
+        is_docking = isinstance(executor.activity, DockingActivity) and not executor.current
         if first.id == executor.current or not executor.is_interruptible:
             return None
         if first.id == CHARGE:

@@ -125,7 +125,7 @@ class Standing:
         return ActivityDone() if now >= self._until else None
 
 
-class Docking:
+class DockingActivity:
     """Drives into the dock, again after a pause if it fails.
 
     Args:
@@ -162,7 +162,7 @@ class Docking:
         return None
 
 
-class Undocking:
+class UndockingActivity:
     """Leaves the dock, again after a pause if that fails, then goes on with another activity.
 
     Args:

@@ -11,11 +11,11 @@ from service.execution.activities import (
     ActivityDisplaced,
     ActivityDone,
     ActivityFailed,
-    Docking,
+    DockingActivity,
     Driving,
     Outcome,
     Standing,
-    Undocking,
+    UndockingActivity,
 )
 from service.execution.robot import RobotEvent, RobotInputs, RobotOrder, StopRobot
 from service.requests.request import Deliver
@@ -78,7 +78,7 @@ class TaskExecutor:
         """Drive into the dock without a task."""
         self._robot = robot
         self._book.log(now, "robot", "drives to the dock")
-        return self._start(Docking(self._settings), elapsed)
+        return self._start(DockingActivity(self._settings), elapsed)
 
     def suspend(self, now: float, reason: str) -> Optional[RobotOrder]:
         """Interrupt the current task or activity; the task keeps its completed steps."""
@@ -116,7 +116,7 @@ class TaskExecutor:
 
     def _on_done(self, now: float, elapsed: float) -> Optional[RobotOrder]:
         activity = self.activity
-        if isinstance(activity, Undocking):
+        if isinstance(activity, UndockingActivity):
             self.activity = activity.following
             return activity.following.start(elapsed)
         if not self.current:
@@ -166,7 +166,7 @@ class TaskExecutor:
 
     def _start(self, activity: Activity, elapsed: float) -> Optional[RobotOrder]:
         if isinstance(activity, Driving) and self._robot.is_docked:
-            activity = Undocking(activity, self._settings)
+            activity = UndockingActivity(activity, self._settings)
         self.activity = activity
         return activity.start(elapsed)
 
@@ -182,7 +182,7 @@ class TaskExecutor:
             return Standing(f"setting down {step.object_name}", settings.dropoff_seconds)
         if isinstance(step, Pause):
             return self._pause(task, step, now)
-        return Docking(settings, settings.attempts)
+        return DockingActivity(settings, settings.attempts)
 
     def _pause(self, task: ServiceTask, step: Pause, now: float) -> Activity:
         """A pause goes on after a restart: its begin is noted."""
