@@ -59,6 +59,25 @@ def test_nothing_is_decided_before_the_first_pose():
     assert result.decision.text == "waiting for the transform map -> odom"
 
 
+def test_without_a_goal_a_tick_is_due_when_a_costmap_is():
+    local, world = (
+        replace(each, update_frequency=2.0) for each in (SETTINGS.local_costmap, SETTINGS.global_costmap)
+    )
+    drive = Drive(local_costmap=local, global_costmap=world)
+    drive.tick()
+    due = []
+    for _ in range(round(2.0 / PERIOD)):
+        due.append(drive.move_base.is_due(drive.robot.now))
+        if due[-1]:
+            drive.tick()
+        else:
+            drive.robot.drive(Twist2())
+    assert sum(due) == 4
+    assert not drive.move_base.is_due(drive.robot.now)
+    drive.move_base.set_goal(GOAL)
+    assert drive.move_base.is_due(drive.robot.now)
+
+
 @pytest.mark.parametrize(
     "sensor, complaint",
     [

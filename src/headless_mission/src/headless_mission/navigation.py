@@ -68,6 +68,9 @@ class NavigationHooks(EpisodeHooks):
             self.move_base.add_scan(self._encoding.scan(scan))
 
     def at_tick(self, episode: Episode, step: StepResult) -> None:
+        if not self.move_base.is_due(step.stamp):
+            self.result = TickResult(Decision(Status.IDLE))
+            return
         self.result = result = self.move_base.tick(step.stamp, episode.latency)
         episode.command = result.decision.command
         self.diagnosis = self.diagnosis or result.fault or ""

@@ -1,5 +1,6 @@
 """MoveBase: what the node move_base does between its messages and the Navigator."""
 
+import math
 from dataclasses import dataclass
 from typing import Callable, FrozenSet, Optional, Sequence
 
@@ -10,10 +11,14 @@ from move_base_lite.move_base.observation_buffer import Measurement
 from move_base_lite.move_base.robot_poses import RobotPoses
 from move_base_lite.move_base.sensor_inputs import SensorInputs
 from move_base_lite.navigator import Navigator
+from move_base_lite.navigator.costmaps import TIME_TOLERANCE
 from move_base_lite.navigator.decision import Decision, GoalOutcome, RecoveryTrigger, Status, with_reason
 from move_base_lite.navigator.inputs import NavigatorInputs, RobotState
 from move_base_lite.navigator.zones import Zones
 from planar import OccupancyGrid, Pose2, Scan, Twist2
+
+# Longest time between two ticks without a goal [s], whatever the costmaps' update_frequency.
+MAX_IDLE_PERIOD = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,6 +71,7 @@ class MoveBase:
         self._scan_topic = settings.scan_topic
         self._navigator: Optional[Navigator] = None
         self._commanded, self._usable_at = Twist2(), None  # type: Twist2, Optional[float]
+        self._ticked_at = -math.inf
         self._maps = StaticMaps.of(grid)
         self._start_navigator()
 
@@ -185,12 +191,22 @@ class MoveBase:
         """Drop the goal, poses and all inputs, as after a jump of time."""
         self.inputs.reset()
         self._poses.reset()
-        self._commanded, self._usable_at = Twist2(), None
+        self._commanded, self._usable_at, self._ticked_at = Twist2(), None, -math.inf
         if self._navigator is not None:
             self._navigator.reset()
 
+    def is_due(self, now: float) -> bool:
+        """Return whether a tick has anything to do: always with a goal, else when a costmap is to be updated.
+
+        Args:
+            now: Time [s].
+        """
+        if self._navigator is None or self._navigator.is_active:
+            return True
+        return now >= min(self._navigator.next_update, self._ticked_at + MAX_IDLE_PERIOD) - TIME_TOLERANCE
+
     def tick(self, now: float, latency: float = 0.0) -> TickResult:
-        """Run one control period.
+        """Run one control period; it may be left out where ``is_due`` is False.
 
         Args:
             now: Time [s].
@@ -198,6 +214,7 @@ class MoveBase:
         """
         if self._navigator is None:
             return TickResult(Decision(Status.IDLE, text="waiting for a map"))
+        self._ticked_at = now
         self.inputs.check_new(self._commanded)
         fault = self.inputs.fault(now)
         missing = self.inputs.missing(now) if fault is None else f"a trustworthy sensor ({fault})"

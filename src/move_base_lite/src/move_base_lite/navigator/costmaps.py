@@ -83,6 +83,11 @@ class Costmaps:
                 frequency = costmap.settings.update_frequency
                 self._next_updates[number] = state.stamp + (1.0 / frequency if frequency > 0.0 else math.inf)
 
+    @property
+    def next_update(self) -> float:
+        """Time at which a costmap is to be updated next [s]."""
+        return min(self._next_updates)
+
     def last_stamp(self, topic: str) -> float:
         """Stamp of the newest observation from a topic [s]; -inf if there is none."""
         return self._last_stamps.get(topic, -math.inf)

@@ -164,6 +164,11 @@ class Navigator:
         return self._execution is not None or self._new_goal is not None
 
     @property
+    def next_update(self) -> float:
+        """Time at which a costmap is to be updated next [s]."""
+        return self._components.costmaps.next_update
+
+    @property
     def global_costmap(self) -> LayeredCostmap:
         """Costmap for planning, in the map frame."""
         return self._components.costmaps.global_costmap

@@ -116,6 +116,8 @@ class MoveBaseNode:
             if self._is_stopped or not self._move_base.is_ready:
                 return
             self._accept_goal(now)
+            if not self._move_base.is_due(now.to_sec()):
+                return
             result = self._move_base.tick(now.to_sec(), self._step.latency)
             self._diagnostics.publish(result.fault, now)
             for complaint in result.complaints:
