@@ -186,3 +186,10 @@ def test_lines_about_connections_are_left_out(ros):
     assert line.event is None
     ros.receive["/rosout_agg"](Log(name="/amcl", msg="lost", level=Log.ERROR))
     assert line.event == LineLogged(0.0, "amcl", "lost", is_warning=True)
+
+
+def test_a_complaint_about_a_shader_of_rviz_is_no_warning(ros):
+    line = latest(LineLogged)
+    text = "rviz/glsl120/indexed_8bit_image.vert\n GLSL link result :\nactive samplers with a different type"
+    ros.receive["/rosout_agg"](Log(name="/rviz", msg=text, level=Log.ERROR))
+    assert line.event == LineLogged(0.0, "rviz", text, is_warning=False)

@@ -41,6 +41,8 @@ from planar_ros.messages.conversion import frame_name, grid_from_msg, pose2_from
 MAP_FRAME, ODOM_FRAME = "map", "odom"
 # File of rospy whose lines about connections are left out.
 CONNECTION_LOG_FILE = "tcpros_base.py"
+# Line of rviz about the shader of its map display, logged as an error in every run and without consequence.
+SHADER_COMPLAINT = "GLSL link result"
 
 
 class Reception(NamedTuple):
@@ -180,7 +182,8 @@ def grid(message: Any, received: Reception) -> MapPublished:
 def log_line(message: Log, received: Reception) -> Optional[LineLogged]:
     if message.file == CONNECTION_LOG_FILE:
         return None
-    return LineLogged(received.stamp, message.name.lstrip("/"), message.msg, message.level >= Log.WARN)
+    is_warning = message.level >= Log.WARN and SHADER_COMPLAINT not in message.msg
+    return LineLogged(received.stamp, message.name.lstrip("/"), message.msg, is_warning)
 
 
 def exploration(message: Any, received: Reception) -> ExplorationUpdated:
