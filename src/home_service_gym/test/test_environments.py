@@ -218,8 +218,8 @@ def test_a_leader_continues_from_a_waypoint_one_cell_away():
 
 def test_the_observed_velocity_of_a_spinning_robot_stays_within_its_space():
     env = DynabarnEnv()
-    env.reset(seed=1003)
-    env.action_space.seed(1003)
+    env.reset(seed=2027)
+    env.action_space.seed(2027)
     fastest = 0.0
     for period in range(300):
         if period % 10 == 0:

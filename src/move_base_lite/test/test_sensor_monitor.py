@@ -98,6 +98,14 @@ def test_odometry_that_stands_still_while_scans_change_is_reported(drive):
     assert "odometry: it stands still" in drive.go(5.0, scan=moving, odometry=lambda _: stuck)
 
 
+def test_odometry_that_stands_still_is_reported_while_commands_alternate_between_fast_and_slow(drive):
+    stuck = Pose2(drive.x, 0.0)
+    angles = np.linspace(-math.pi, math.pi, BEAMS)
+    moving = lambda ranges: (ranges + drive.x * np.cos(angles)).astype(np.float32)  # noqa: E731
+    faults = [drive.go(PERIOD, moving, lambda _: stuck, v) for _ in range(20) for v in (0.38, 0.02)]
+    assert any("odometry: it stands still" in (fault or "") for fault in faults)
+
+
 def test_a_blocked_robot_has_no_sensor_fault(drive):
     at = drive.x
     assert drive.go(5.0, scan=lambda _: drive.truth(), odometry=lambda _: Pose2(at, 0.0), v=0.0) is None

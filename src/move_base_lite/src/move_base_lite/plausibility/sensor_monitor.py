@@ -25,6 +25,9 @@ FROZEN_MOTION, FROZEN_SCANS, MIN_SCAN_MOTION = 0.15, 3, 0.005
 # Seconds of a command, and its speed in m/s or rad/s, after which odometry must have changed.
 ODOMETRY_PATIENCE = 1.0
 MIN_COMMAND = 0.1
+# Longest time without such a command [s] after which the robot still counts as commanded: a turn towards a
+# goal that odometry never reaches alternates between fast and slow commands.
+COMMAND_GAP = 0.5
 # Median change of the ranges that proves motion [m].
 CHANGED_RANGE = 0.1
 # Seconds without odometry after it has been received. Missing scans are covered by expected_update_rate.
@@ -56,6 +59,7 @@ class SensorMonitor:
         self._base = Pose2()
         self._odometry_stamp: Optional[float] = None
         self._still_since: Optional[float] = None
+        self._commanded_at = -math.inf
         self._ranges_when_still: Optional[np.ndarray] = None
         self._ranges: Optional[np.ndarray] = None
         self._base_at_scan, self._frozen_motion, self._frozen_scans = Pose2(), 0.0, 0
@@ -90,9 +94,11 @@ class SensorMonitor:
             command: Velocity command that the robot follows.
         """
         is_commanded = abs(command.v) > MIN_COMMAND or abs(command.omega) > MIN_COMMAND
-        if base_in_odom != self._base or not is_commanded:
+        if is_commanded:
+            self._commanded_at = now
+        if base_in_odom != self._base or now - self._commanded_at > COMMAND_GAP:
             self._still_since = None
-        elif self._still_since is None:
+        elif self._still_since is None and is_commanded:
             self._still_since, self._ranges_when_still = now, self._ranges
         self._base, self._odometry_stamp = base_in_odom, now
         self._wheels.add_odometry(now, base_in_odom, command)

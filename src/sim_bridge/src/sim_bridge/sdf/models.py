@@ -55,14 +55,23 @@ class SdfModel:
     @property
     def is_driven(self) -> bool:
         """Whether it has a drive plugin and is therefore a robot."""
-        return not self.is_static and any(
-            child.tag == "plugin" and plugin_name(child) in DRIVES for child in self.element.children()
-        )
+        return not self.is_static and self._has_plugin(DRIVES)
 
     @property
     def is_dock(self) -> bool:
         """Whether it is a dock."""
-        return any(plugin_name(plugin) == DOCK for plugin in self.element.children("plugin"))
+        return self._has_plugin((DOCK,))
+
+    def _has_plugin(self, names: Sequence[str]) -> bool:
+        """Return whether one of its plugins has one of these names; the others do not count as read."""
+        found = [
+            child
+            for child in self.element.children()
+            if child.tag == "plugin" and plugin_name(child) in names
+        ]
+        for plugin in found:
+            plugin.document.mark(plugin.xml)
+        return bool(found)
 
     def add(self, model: "SdfModel") -> None:
         """Add a nested model."""
