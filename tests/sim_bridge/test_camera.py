@@ -111,8 +111,12 @@ def stamps_of(topic, kind, count):
 
 
 def dropped_messages():
-    (status,) = wait_for("/diagnostics", DiagnosticArray).status
-    return {value.key: value.value for value in status.values}["dropped_messages"]
+    for _ in range(10):  # also of the battery and the sensors
+        for status in wait_for("/diagnostics", DiagnosticArray).status:
+            values = {value.key: value.value for value in status.values}
+            if "dropped_messages" in values:
+                return values["dropped_messages"]
+    raise AssertionError("no diagnostics of dropped messages")
 
 
 def most_simulated():
