@@ -71,7 +71,15 @@ class TemporaryWorkspace:
 
     def set_up(self, *extras):
         process = self.start(f"set_up {' '.join(extras)}")
-        output, _ = process.communicate(timeout=60)
+        try:
+            output, _ = process.communicate(timeout=60)
+        except subprocess.TimeoutExpired as error:
+            columns = "pid,ppid,pgid,sid,stat,wchan:20,args"
+            state = subprocess.run(
+                ["ps", "-e", "-o", columns], capture_output=True, text=True, check=False
+            ).stdout
+            kill_session(process.pid, whole=True)
+            raise AssertionError(f"the set-up hangs:\n{error.output!r}\n{state}") from error
         assert process.returncode == 0, output
 
     def build(self, devel="devel"):
