@@ -21,6 +21,8 @@ from sim_bridge.physics.surfaces import ContactSurfaces
 from sim_bridge.world import Body, Joint
 
 SOLVER_ITERATIONS = 50
+# Change of the impulses in one iteration at which the solver stops; a wheel rolls within 0.1 mm/s of its speed.
+SOLVER_RESIDUAL = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +80,10 @@ class Engine:
         # Friction is limited in two directions apart, as by default in Gazebo (ODE's pyramid model); Bullet's
         # cone costs half as much again.
         self._bullet.setPhysicsEngineParameter(
-            numSolverIterations=SOLVER_ITERATIONS, deterministicOverlappingPairs=1, enableConeFriction=0
+            numSolverIterations=SOLVER_ITERATIONS,
+            solverResidualThreshold=SOLVER_RESIDUAL,
+            deterministicOverlappingPairs=1,
+            enableConeFriction=0,
         )
         self.set_gravity(gravity)
         # Masses of the links that gravity does not act on.
