@@ -2,7 +2,7 @@
 # PyBullet 3.2.7: contactBreakingThreshold belongs to the process, not to the client that sets it.
 #
 # Guess:  setPhysicsEngineParameter(..., physicsClientId=a) affects the simulation of client a; another client in the
-#         same process, connected with DIRECT, is a world of its own, and resetSimulation gives the defaults.
+#         same process, connected with DIRECT, has a separate world, and resetSimulation gives the defaults.
 # Is:     once one client has set contactBreakingThreshold, a box that is thrown in any other client comes to rest
 #         elsewhere, in clients made before and after, also after resetSimulation and after the client that set it
 #         has disconnected. getPhysicsEngineParameters does not report the value.

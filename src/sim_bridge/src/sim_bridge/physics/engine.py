@@ -21,7 +21,7 @@ from sim_bridge.physics.surfaces import ContactSurfaces
 from sim_bridge.world import Body, Joint
 
 SOLVER_ITERATIONS = 50
-# Change of the impulses in one iteration at which the solver stops; a wheel rolls within 0.1 mm/s of its speed.
+# Change of the impulses in one iteration at which the solver stops; a wheel rolls within 0.1 mm/s of that.
 SOLVER_RESIDUAL = 1e-6
 
 
