@@ -125,11 +125,48 @@ class Standing:
         return ActivityDone() if now >= self._until else None
 
 
-class DockingActivity:
-    """Drives into the dock, again after a pause if it fails.
+class _RetriedOrder:
+    """Sends an order to dock or undock, again after a pause if it fails.
 
     Args:
-        settings: The pause.
+        order: The order.
+        success: Type of the event that ends it.
+        achievement: What the robot is then, for messages.
+        pause: Time before another attempt [s].
+        attempts: Number of attempts; None: until it succeeds.
+    """
+
+    def __init__(
+        self, order: RobotOrder, success: type, achievement: str, pause: float, attempts: Optional[int]
+    ):
+        self._order, self._success, self._achievement = order, success, achievement
+        self._pause, self._left = pause, attempts
+        self._retry_at: Optional[float] = None
+
+    @property
+    def wakes_at(self) -> Optional[float]:
+        return self._retry_at
+
+    def start(self, now: float) -> Optional[RobotOrder]:
+        self._retry_at = None
+        return self._order
+
+    def advance(self, now: float, event: Optional[RobotEvent]) -> Outcome:
+        if isinstance(event, self._success):
+            return ActivityDone()
+        if isinstance(event, DockingFailed):
+            self._left = None if self._left is None else self._left - 1
+            if self._left == 0:
+                return ActivityFailed(f"not {self._achievement}: {event.reason}")
+            self._retry_at = now + self._pause
+        return self.start(now) if self._retry_at is not None and now >= self._retry_at else None
+
+
+class DockingActivity(_RetriedOrder):
+    """Drives into the dock.
+
+    Args:
+        settings: The pause before another attempt.
         attempts: Number of attempts; None: until it succeeds.
     """
 
@@ -137,61 +174,27 @@ class DockingActivity:
     text = "docking"
 
     def __init__(self, settings: ServiceSettings, attempts: Optional[int] = None):
-        self._pause, self._left = settings.dock_retry_seconds, attempts
-        self._retry_at: Optional[float] = None
-
-    @property
-    def wakes_at(self) -> Optional[float]:
-        return self._retry_at
-
-    def start(self, now: float) -> Optional[RobotOrder]:
-        self._retry_at = None
-        return DockRobot()
+        super().__init__(DockRobot(), RobotDocked, "docked", settings.dock_retry_seconds, attempts)
 
     def advance(self, now: float, event: Optional[RobotEvent]) -> Outcome:
-        if isinstance(event, RobotDocked):
-            return ActivityDone()
-        if isinstance(event, DockingFailed):
-            self._left = None if self._left is None else self._left - 1
-            if self._left == 0:
-                return ActivityFailed(f"not docked: {event.reason}")
-            self._retry_at = now + self._pause
+        outcome = super().advance(now, event)
+        if isinstance(event, DockingFailed) and not isinstance(outcome, ActivityFailed):
             self.text = f"docking again after: {event.reason}"
-        if self._retry_at is not None and now >= self._retry_at:
-            return self.start(now)
-        return None
+        return outcome
 
 
-class UndockingActivity:
-    """Leaves the dock, again after a pause if that fails, then goes on with another activity.
+class UndockingActivity(_RetriedOrder):
+    """Leaves the dock, then goes on with another activity.
 
     Args:
         following: What is done next.
-        settings: The pause, and the number of attempts.
+        settings: The pause before another attempt, and the number of attempts.
     """
 
     is_interruptible = False
     text = "undocking"
 
     def __init__(self, following: Activity, settings: ServiceSettings):
-        self.following, self._settings = following, settings
-        self._left = settings.attempts
-        self._retry_at: Optional[float] = None
-
-    @property
-    def wakes_at(self) -> Optional[float]:
-        return self._retry_at
-
-    def start(self, now: float) -> Optional[RobotOrder]:
-        self._retry_at = None
-        return UndockRobot()
-
-    def advance(self, now: float, event: Optional[RobotEvent]) -> Outcome:
-        if isinstance(event, RobotUndocked):
-            return ActivityDone()
-        if isinstance(event, DockingFailed):
-            self._left -= 1
-            if self._left == 0:
-                return ActivityFailed(f"not undocked: {event.reason}")
-            self._retry_at = now + self._settings.dock_retry_seconds
-        return self.start(now) if self._retry_at is not None and now >= self._retry_at else None
+        pause, attempts = settings.dock_retry_seconds, settings.attempts
+        super().__init__(UndockRobot(), RobotUndocked, "undocked", pause, attempts)
+        self.following = following
