@@ -8,8 +8,8 @@ import math
 from typing import Any, Dict, List
 
 import numpy as np
-from amcl_rig import run_official, run_ours
-from case import SAME, Case, Rig
+from case import SAME, Case
+from node_rig import node_rig
 
 from planar import Pose2
 
@@ -327,4 +327,4 @@ MOVES = [
 ]
 
 CASES = [parameter(name) for name in PARAMETERS] + STANDS + MOVES
-RIGS = {"amcl": Rig(run_ours, run_official, ("amcl/amcl",))}
+RIGS = {"amcl": node_rig("amcl_lite.ros.node", "amcl", "amcl", "observe_amcl")}

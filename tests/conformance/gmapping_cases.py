@@ -6,8 +6,8 @@ The input of a case is a run of ``observe_gmapping`` (``parameters``, ``steps``,
 
 from typing import Any
 
-from case import SAME, Case, Rig
-from gmapping_rig import run_official, run_ours
+from case import SAME, Case
+from node_rig import node_rig
 
 SOURCE, MATCHER = "gmapping/src/slam_gmapping.cpp", "gmapping/scanmatcher/scanmatcher.cpp"
 SMALL = {"xmin": -5.0, "ymin": -4.0, "xmax": 5.0, "ymax": 4.0}
@@ -156,4 +156,4 @@ CASES = [
         **after(["scans", 3, "3.0"], maxRange=2.5),
     ),
 ]
-RIGS = {"gmapping": Rig(run_ours, run_official, ("gmapping/slam_gmapping",))}
+RIGS = {"gmapping": node_rig("slam_lite.ros.node", "gmapping", "slam_gmapping", "observe_gmapping")}

@@ -4,14 +4,13 @@ import pytest
 
 pytest.importorskip("rospy")
 
-from amcl_cases import CASES  # noqa: E402
-from amcl_rig import run_ours  # noqa: E402
+from amcl_cases import CASES, RIGS  # noqa: E402
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_our_amcl_keeps_the_statement(case):
     """The statement of ``Case.source``, or the stated difference."""
-    assert run_ours(case.input) == case.expected, case.source
+    assert RIGS["amcl"].ours(case.input) == case.expected, case.source
 
 
 def test_each_difference_from_the_official_node_has_a_reason():

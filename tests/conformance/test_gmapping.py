@@ -4,8 +4,7 @@ import pytest
 
 pytest.importorskip("rospy")
 
-from gmapping_cases import CASES, DEFAULTS  # noqa: E402
-from gmapping_rig import run_ours  # noqa: E402
+from gmapping_cases import CASES, DEFAULTS, RIGS  # noqa: E402
 
 from planar.config.parameters import parameters_of  # noqa: E402
 from slam_lite.config import NodeSettings  # noqa: E402
@@ -14,7 +13,7 @@ from slam_lite.config import NodeSettings  # noqa: E402
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_our_gmapping_keeps_the_statement(case):
     """The statement of ``Case.source``, or the stated difference."""
-    assert run_ours(case.input) == case.expected, case.source
+    assert RIGS["gmapping"].ours(case.input) == case.expected, case.source
 
 
 def test_each_difference_from_the_official_node_has_a_reason():
