@@ -111,10 +111,15 @@ start_aside() { # LOG COMMAND...: goes on beside the next steps, until finish_as
 
 finish_aside() { # TITLE: waits, and returns the exit code of what was started aside
     local status=0
-    step "$1" /dev/null tail --pid="$aside_pid" --follow /dev/null
+    step "$1" /dev/null await_end_of "$aside_pid"
     wait "$aside_pid" || status=$?
     aside_pid=
     return "$status"
+}
+
+await_end_of() { # PID: a process that has ended stays in the table where nobody reaps orphans, as in many containers
+    local state
+    while read -r _ _ state _ <"/proc/$1/stat" && [[ $state != Z ]]; do sleep 0.1; done
 }
 
 enter_workspace() {

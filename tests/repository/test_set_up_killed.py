@@ -1,6 +1,7 @@
 """scripts/setup.sh, killed at random moments in a temporary workspace with stubs of its heavy steps."""
 
 import contextlib
+import ctypes
 import os
 import random
 import shutil
@@ -74,12 +75,8 @@ class TemporaryWorkspace:
         try:
             output, _ = process.communicate(timeout=60)
         except subprocess.TimeoutExpired as error:
-            columns = "pid,ppid,pgid,sid,stat,wchan:20,args"
-            state = subprocess.run(
-                ["ps", "-e", "-o", columns], capture_output=True, text=True, check=False
-            ).stdout
             kill_session(process.pid, whole=True)
-            raise AssertionError(f"the set-up hangs:\n{error.output!r}\n{state}") from error
+            raise AssertionError(f"the set-up hangs:\n{error.output!r}") from error
         assert process.returncode == 0, output
 
     def build(self, devel="devel"):
@@ -99,6 +96,17 @@ class TemporaryWorkspace:
             names.append(name)
         assert (venv / "bin/tool").read_text() == f"#!{venv}/bin/python3\n"
         return set(names)
+
+
+@contextlib.contextmanager
+def orphans_adopted():
+    """Be the parent of processes whose parents end, without waiting for them."""
+    prctl, set_child_subreaper = ctypes.CDLL(None).prctl, 36
+    assert prctl(set_child_subreaper, 1, 0, 0, 0) == 0
+    try:
+        yield
+    finally:
+        prctl(set_child_subreaper, 0, 0, 0, 0)
 
 
 def kill_session(leader, whole):
@@ -149,6 +157,22 @@ def test_a_set_up_that_is_killed_leaves_the_old_state_or_the_new_one(tmp_path, m
         if graph is not None:
             graph.kill()
             graph.communicate()
+
+
+def test_a_set_up_goes_on_where_nobody_reaps_the_orphans_of_the_last_one(tmp_path):
+    """As in a container whose first process is no init: what has ended stays in the table of processes."""
+    workspace = TemporaryWorkspace(tmp_path)
+    with orphans_adopted():
+        slow = "install_python() { : >$root/begun; sleep 2; }"
+        killed = workspace.start(f"{slow}; set_up")
+        for line in killed.stdout:
+            if line.startswith("Python packages"):
+                break  # what remains is to wait for them
+        assert (tmp_path / "begun").exists()
+        time.sleep(0.2)
+        kill_session(killed.pid, whole=False)
+        workspace.set_up()
+    assert workspace.installed() == {"requirements.txt"}
 
 
 def test_packages_do_not_change_while_something_runs_in_the_workspace(tmp_path):

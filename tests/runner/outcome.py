@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Sequence
+from typing import Sequence, Tuple
 from xml.etree import ElementTree
 
 NO_TESTS = 5  # pytest's exit code
@@ -10,19 +10,23 @@ NO_TESTS = 5  # pytest's exit code
 
 @dataclass(frozen=True)
 class Outcome:
-    """Number of passed, failed and skipped tests, and the reason of the first failure."""
+    """Number of passed, failed and skipped tests, and the reasons of the failures."""
 
     passed: int = 0
     failed: int = 0
     skipped: int = 0
-    reason: str = ""
+    reasons: Tuple[str, ...] = ()
+
+    @property
+    def reason(self) -> str:
+        return self.reasons[0] if self.reasons else ""
 
     def __add__(self, other: "Outcome") -> "Outcome":
         return Outcome(
             self.passed + other.passed,
             self.failed + other.failed,
             self.skipped + other.skipped,
-            self.reason or other.reason,
+            self.reasons + other.reasons,
         )
 
     def __str__(self) -> str:
@@ -31,11 +35,11 @@ class Outcome:
 
 
 def failure(reason: str) -> Outcome:
-    return Outcome(failed=1, reason=reason)
+    return Outcome(failed=1, reasons=(reason,))
 
 
 def read_report(path: Path) -> Outcome:
-    """Sum the counts of a JUnit report over its suites, with the first failure's message."""
+    """Sum the counts of a JUnit report over its suites, with the failures' messages."""
     try:
         report = ElementTree.parse(path).getroot()
         suites = list(report.iter("testsuite"))
@@ -50,20 +54,19 @@ def read_report(path: Path) -> Outcome:
         max(counts["tests"] - failed - counts["skipped"], 0),
         failed,
         counts["skipped"],
-        first_failure(report),
+        failures_in(report),
     )
 
 
-def first_failure(report: ElementTree.Element) -> str:
-    """Return name and message of the first failed test, or an empty text."""
+def failures_in(report: ElementTree.Element) -> Tuple[str, ...]:
+    """Return name and message of each failed test."""
+    found = []
     for case in report.iter("testcase"):
-        for kind in ("failure", "error"):
-            found = case.find(kind)
-            if found is not None:
-                # pytest's is an attribute; rosunit's stands before the traceback.
-                message = found.get("message") or (found.text or "").strip().partition("\n")[0]
-                return f"{case.get('name')}: {' '.join(message.split())[:300]}"
-    return ""
+        for failed in (*case.iter("failure"), *case.iter("error")):
+            # pytest's is an attribute; rosunit's stands before the traceback.
+            message = failed.get("message") or (failed.text or "").strip().partition("\n")[0]
+            found.append(f"{case.get('name')}: {' '.join(message.split())[:300]}")
+    return tuple(found)
 
 
 def judge_unit_tests(report: Path, exit_code: int) -> Outcome:

@@ -1,6 +1,7 @@
 """Let pytest collect .test files: each is one item, run by rostest in a contained child process."""
 
 import shutil
+from dataclasses import astuple
 from datetime import datetime
 from importlib.util import find_spec
 from pathlib import Path
@@ -9,7 +10,7 @@ from typing import Iterator, Optional, Tuple
 import psutil
 import pytest
 from containment import ROOT
-from outcome import Outcome
+from outcome import Outcome, failure
 from ros_test import RosTest, log_of
 
 TAIL_LINES = 60
@@ -54,7 +55,7 @@ class RosTestItem(pytest.Item):
         folder.mkdir(parents=True, exist_ok=True)
         test = RosTest(folder, self.path)
         outcome = test.wait()
-        self.user_properties.append((OUTCOME, (outcome.passed, outcome.failed, outcome.skipped)))
+        self.user_properties.append((OUTCOME, astuple(outcome)))
         if outcome.failed:
             log = log_of(folder, test.name)
             tail = indented_tail(log) if log.exists() else ""  # a terminated test may have no log
@@ -98,7 +99,7 @@ def pytest_keyboard_interrupt() -> None:
 def outcome_of(report) -> Optional[Outcome]:
     """Return the outcome of the tests in a .test file; None for other reports."""
     found = dict(report.user_properties).get(OUTCOME) if report.when == "call" else None
-    return None if found is None else Outcome(*found)
+    return None if found is None else Outcome(*found[:3], tuple(found[3]))
 
 
 class Totals:
@@ -110,7 +111,7 @@ class Totals:
     def pytest_runtest_logreport(self, report) -> None:
         found = outcome_of(report)
         if found is None and report.failed:
-            found = Outcome(failed=1)
+            found = failure(f"{report.location[2]}: {str(report.longrepr).strip().splitlines()[-1]}")
         self.outcome += found or Outcome()
 
 

@@ -16,7 +16,7 @@ from typing import Iterable, List, Optional, Sequence, Tuple
 import psutil
 import pytest
 from containment import GRACE_SECONDS, ROOT, run_contained
-from outcome import Outcome, judge_unit_tests
+from outcome import Outcome, failure, judge_unit_tests
 from ros_test import log_of
 from rostest_plugin import Totals, indented_tail
 
@@ -69,7 +69,7 @@ def run_unit_tests(folder: Path, names: Sequence[str]) -> Outcome:
     )
     print(f"unit: {outcome} ({time.monotonic() - started:.0f} s)", flush=True)
     if outcome.failed:
-        print(f"{indented_tail(log)}\nFAILED unit: {outcome.reason or 'see the log'} -- {log}")
+        print(f"{indented_tail(log)}\nFAILED unit: see {log}")
     return outcome
 
 
@@ -96,7 +96,7 @@ def run_ros_tests(folder: Path, paths: Sequence[Path], jobs: int, is_quick: bool
         psutil.wait_procs(psutil.Process().children(recursive=True), timeout=2.0 * GRACE_SECONDS)
         raise KeyboardInterrupt
     if code not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED) and not totals.outcome.failed:
-        return totals.outcome + Outcome(failed=1, reason=f"pytest ended with exit code {code}")
+        return totals.outcome + failure(f"pytest ended with exit code {code}")
     return totals.outcome
 
 
@@ -121,6 +121,8 @@ def main() -> int:
     if ros:
         jobs = options.jobs or min(len(os.sched_getaffinity(0)), MOST_JOBS)
         outcome += run_ros_tests(folder, ros, jobs, options.quick)
+    for reason in outcome.reasons:
+        print(f"FAILED  {reason}")
     print(outcome)
     return 0 if outcome.passed and not outcome.failed else 1
 

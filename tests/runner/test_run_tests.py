@@ -40,11 +40,19 @@ def test_a_report_is_counted_over_all_its_suites(tmp_path):
         ),
     ],
 )
-def test_the_reason_is_the_message_of_the_first_failure(tmp_path, kind, reason):
+def test_the_reason_is_the_message_of_the_failure(tmp_path, kind, reason):
     path = tmp_path / "unit.xml"
     cases = f'<testcase name="test_a"/><testcase name="test_b">{kind}</testcase>'
     path.write_text(f'<testsuite tests="2" failures="1">{cases}</testsuite>')
-    assert read_report(path) == Outcome(passed=1, failed=1, reason=reason)
+    assert read_report(path) == Outcome(passed=1, failed=1, reasons=(reason,))
+
+
+def test_every_failure_is_named(tmp_path):
+    path = tmp_path / "unit.xml"
+    cases = "".join(f'<testcase name="{name}"><failure message="no"/></testcase>' for name in "ab")
+    path.write_text(f'<testsuite tests="2" failures="2">{cases}</testsuite>')
+    outcome = read_report(path) + Outcome(failed=1, reasons=("c: no",))
+    assert outcome.reasons == ("a: no", "b: no", "c: no")
 
 
 def test_what_fails_before_the_first_test_takes_nothing_from_those_that_passed(tmp_path):
