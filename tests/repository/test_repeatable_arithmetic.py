@@ -20,13 +20,15 @@ def calls_on_columns(path: Path) -> Iterator[int]:
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if (
             isinstance(node, ast.Call)
-            and ast.unparse(node.func) in FUNCTIONS
+            and isinstance(node.func, ast.Attribute)
+            and isinstance(node.func.value, ast.Name)
+            and f"{node.func.value.id}.{node.func.attr}" in FUNCTIONS
             and any(isinstance(each, ast.Subscript) and is_column(each.slice) for each in node.args)
         ):
             yield node.lineno
 
 
-def is_column(index: ast.expr) -> bool:
+def is_column(index: object) -> bool:
     """Return whether an index selects a column behind the first two, or columns."""
     if not isinstance(index, ast.Tuple) or not isinstance(index.elts[0], ast.Slice):
         return False

@@ -99,7 +99,10 @@ def pytest_keyboard_interrupt() -> None:
 def outcome_of(report) -> Optional[Outcome]:
     """Return the outcome of the tests in a .test file; None for other reports."""
     found = dict(report.user_properties).get(OUTCOME) if report.when == "call" else None
-    return None if found is None else Outcome(*found[:3], tuple(found[3]))
+    if found is None:
+        return None
+    passed, failed, skipped, reasons = found
+    return Outcome(passed, failed, skipped, tuple(reasons))
 
 
 class Totals:

@@ -1,8 +1,12 @@
 """Course projects are recognized by their launch files, and judged by their checks."""
 
+import math
 from pathlib import Path
 
-from run_project.course.checks import CheckResults
+import numpy as np
+
+from planar import Pose2
+from run_project.course.checks import CheckResults, camera_pose
 from run_project.course.launch_plan import CourseProject, ProjectLaunchPlan, find_launch_plan
 
 WORLD = '<launch><include file="$(find gazebo_ros)/launch/empty_world.launch"/></launch>'
@@ -30,6 +34,14 @@ def test_the_last_project_is_selected_because_each_contains_the_earlier_ones():
     amcl = {"my_robot/launch/amcl.launch": AMCL}
     assert planned(amcl).project is CourseProject.LOCALIZE
     assert planned({**amcl, "my_robot/launch/mapping.launch": RTABMAP}).project is CourseProject.MAP
+
+
+def test_copies_of_public_packages_do_not_make_a_lesson():
+    packages = {**PACKAGES, "turtlebot_navigation": Path("turtlebot_navigation")}
+    gmapping = '<launch><node name="g" pkg="gmapping" type="slam_gmapping"/></launch>'
+    files = {**CHASE_FILES, "turtlebot_navigation/launch/gmapping_demo.launch": gmapping}
+    assert find_launch_plan(packages, files, None).project is CourseProject.CHASE
+    assert find_launch_plan(packages, files, "map_my_world").project is CourseProject.MAP
 
 
 def test_an_earlier_project_can_be_selected_by_name():
@@ -95,3 +107,12 @@ def test_a_course_project_succeeds_if_all_checks_passed():
     assert not results.verdict("interrupted").success
     results.add(False, "did not stop after the ball was removed")
     assert not results.verdict().success
+
+
+def test_a_camera_is_placed_by_its_direction_of_view():
+    backwards = np.eye(4)
+    backwards[:3, :3], backwards[:3, 3] = np.diag([-1.0, -1.0, 1.0]), (0.2, 0.1, 0.3)
+    assert camera_pose(backwards, is_optical=False) == Pose2(0.2, 0.1, math.pi)
+    optical = np.eye(4)
+    optical[:3, :3] = [[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]  # z forward, x to the right
+    assert camera_pose(optical, is_optical=True).yaw == 0.0

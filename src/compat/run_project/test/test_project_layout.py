@@ -1,6 +1,8 @@
 import pytest
 
-from run_project.checkout.layout import CheckoutKind, ProjectError, choose_script, read_checkout
+from run_project.checkout.entry import choose_script, readme_commands
+from run_project.checkout.layout import CheckoutKind, ProjectError, read_checkout
+from run_project.options import parse
 
 
 def checkout(folder, *files):
@@ -65,22 +67,59 @@ def test_an_invalid_package_xml_is_reported(tmp_path):
 @pytest.mark.parametrize("name", ["home_service.sh", "HomeService.sh", "test_home_service.sh"])
 def test_the_home_service_script_is_found(tmp_path, name):
     project = checkout(tmp_path, "src/pick/package.xml", "src/scripts/pick.sh", f"src/scripts/{name}")
-    assert choose_script(project, None).name == name
+    assert choose_script(project, None, tmp_path).name == name
 
 
 @pytest.mark.parametrize("wanted", ["pick", "pick.sh", "src/scripts/pick.sh"])
 def test_another_script_is_selected_by_stem_name_or_path(tmp_path, wanted):
     project = checkout(tmp_path, "src/pick/package.xml", "src/scripts/pick.sh", "src/scripts/home_service.sh")
-    assert str(choose_script(project, wanted)) == "src/scripts/pick.sh"
+    assert str(choose_script(project, wanted, tmp_path)) == "src/scripts/pick.sh"
 
 
 def test_a_missing_script_is_reported_with_the_existing_ones(tmp_path):
     project = checkout(tmp_path, "src/pick/package.xml", "src/scripts/pick.sh")
     with pytest.raises(
         ProjectError,
-        match=r"no script home_service\.sh in this checkout; name one of its scripts: src/scripts/pick\.sh",
+        match=r"no script home_service\.sh in this checkout; name one of its scripts \(src/scripts/pick",
     ):
-        choose_script(project, None)
+        choose_script(project, None, tmp_path)
+
+
+def test_a_launch_file_is_run_by_a_script_that_is_written(tmp_path):
+    project = checkout(tmp_path / "repo", "src/maze/package.xml", "src/maze/launch/race.launch")
+    for wanted in ("race", "race.launch", "src/maze/launch/race.launch"):
+        script = choose_script(project, wanted, tmp_path)
+        assert script.parent == tmp_path
+        assert script.read_text() == "#!/bin/sh\nexec roslaunch maze race.launch\n"
+
+
+def test_a_command_is_run_as_it_is_typed(tmp_path):
+    project = checkout(tmp_path / "repo", "src/maze/package.xml")
+    script = choose_script(project, "roslaunch maze race.launch gui:='no; x'", tmp_path)
+    assert script.read_text() == "#!/bin/sh\nexec roslaunch maze race.launch 'gui:=no; x'\n"
+
+
+def test_what_a_project_without_scripts_offers_is_proposed(tmp_path):
+    project = checkout(
+        tmp_path,
+        *("src/maze/package.xml", "src/maze/launch/race.launch", "README.md"),
+        *("src/gmapping/package.xml", "src/gmapping/launch/demo.launch"),
+    )
+    (tmp_path / "README.md").write_text(
+        "Build it:\n```\n$ catkin_make\n$ roslaunch maze race.launch speed:=2\n```\n"
+        "then `roscd`\n    rosrun maze go.py\n"
+    )
+    with pytest.raises(ProjectError) as refusal:
+        choose_script(project, None, tmp_path)
+    assert str(refusal.value).endswith(
+        "name a launch file (src/maze/launch/race.launch) or a command as its README has it "
+        "('roslaunch maze race.launch speed:=2', 'rosrun maze go.py') after the path"
+    )
+    assert readme_commands(project) == ["roslaunch maze race.launch speed:=2", "rosrun maze go.py"]
+
+
+def test_a_script_may_follow_an_option():
+    assert parse(["path", "--seed", "3", "pick.sh"]).script == "pick.sh"
 
 
 def test_maps_without_image_are_found(tmp_path):

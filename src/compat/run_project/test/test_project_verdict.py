@@ -20,6 +20,7 @@ from run_project.stand_ins.nodelet import command_for
 from run_project.stand_ins.rviz_topics import displayed_topics
 
 ACTIVE, PREEMPTED, SUCCEEDED, ABORTED = 1, 2, 3, 4
+A, B, C = (1.0, 2.0), (3.0, 4.0), (5.0, 6.0)
 
 
 class Record(ProjectRunRecord):
@@ -103,11 +104,48 @@ def test_the_final_status_of_goals_can_be_declared(expected, success):
     assert verdict.reason.startswith("1 of 2 goals reached; aborted, succeeded, ")
 
 
+@pytest.mark.parametrize(("aborted", "success"), [(3, True), (30, False)])
+def test_a_project_without_an_end_is_judged_by_the_share_of_goals_reached(aborted, success):
+    endings = [SUCCEEDED] * 58 + [ABORTED] * aborted + [ACTIVE]
+    record = record_of(*endings, places=[(float(x), 0.0) for x in range(len(endings))])
+    verdict = judge(record, "not done within 600 s of wall time", time_limit=600.0)
+    assert verdict.success is success
+    assert verdict.reason == (
+        f"still running after 600 s of wall time; 58 of {58 + aborted} goals reached, 0.0 m driven"
+    )
+
+
+def test_a_home_service_mission_has_to_end():
+    verdict = judge(record_of(SUCCEEDED, ACTIVE, places=(A, B)), "over", requires_goals=True, time_limit=60.0)
+    assert not verdict.success
+    assert "1 of 1 goals reached" in verdict.reason and "--timeout" in verdict.reason
+
+
+@pytest.mark.parametrize(("rest", "success"), [(5.0, True), (40.0, False)])
+def test_a_robot_that_wanders_without_goals_succeeds_as_long_as_it_drives(rest, success):
+    record = Record()
+    for second in range(10):
+        record.at(float(second)).stand_at(0.3 * second, 0.0)
+    record.at(9.0 + rest)
+    verdict = judge(record, "over", time_limit=60.0)
+    assert verdict.success is success
+    assert "0 of 0 goals reached, 2.7 m driven" in verdict.reason
+    assert judge(record).success
+    assert not judge(record, requires_goals=True).success
+
+
+def test_the_object_of_a_home_service_mission_has_to_move():
+    record = record_of(SUCCEEDED, SUCCEEDED, places=(A, B))
+    record.show(("", 0), A)
+    stays = judge(record, requires_goals=True)
+    assert not stays.success and "neither hidden at the pick-up nor shown elsewhere" in stays.reason
+    assert judge(record).success
+    record.show(("", 0), B)
+    assert judge(record, requires_goals=True).success
+
+
 def test_a_run_that_was_cut_short_is_never_as_expected():
     assert not judge(record_of(ABORTED), "interrupted", expected=("aborted",)).success
-
-
-A, B, C = (1.0, 2.0), (3.0, 4.0), (5.0, 6.0)
 
 
 @pytest.mark.parametrize(

@@ -36,6 +36,7 @@ class FakeRun:
             events.publish(event)
         self.observer = SimpleNamespace(record=record, simulated_time=12.34)
         self.user = None
+        self.is_over_time = False
         self._is_interrupted = is_interrupted
 
     def __enter__(self):

@@ -1,3 +1,5 @@
+import pytest
+
 from run_project.preparation.selection import select_packages
 
 COMPILED = "find_package(catkin REQUIRED COMPONENTS {0})\nadd_executable(x x.cpp)\n"
@@ -24,6 +26,11 @@ def choose(folders, stand_ins=None, there=("roscpp",)):
 def test_the_authors_own_packages_are_built(tmp_path):
     selection = choose(package(tmp_path, "pick_objects", COMPILED.format("roscpp")))
     assert (selection.replaced, selection.unbuilt, selection.absent) == ({}, {}, {})
+
+
+@pytest.mark.parametrize("name", ["turtlebot_delivery", "kobuki_chase", "create_world", "explore"])
+def test_a_package_whose_name_only_begins_like_a_public_one_is_built(tmp_path, name):
+    assert choose(package(tmp_path, name, COMPILED.format("roscpp"))).unbuilt == {}
 
 
 def test_vendored_compiled_packages_are_not_built(tmp_path):

@@ -2,6 +2,7 @@ from pathlib import Path
 
 from run_project.checkout.layout import read_checkout
 from run_project.checkout.placement import best_placement
+from run_project.checkout.substitutes import complete_package
 from run_project.preparation.building import copy_checkout
 
 DEMO = "turtlebot_simulator/turtlebot_gazebo/launch/amcl_demo.launch"
@@ -61,3 +62,37 @@ def test_empty_folders_with_other_names_stay_empty(tmp_path):
     root = project(tmp_path / "repo", script="")
     (root / "thirdparty").mkdir()
     assert not read_checkout(root).substitutes
+
+
+def files_of(folder):
+    return {str(file.relative_to(folder)): file.read_text() for file in folder.rglob("*") if file.is_file()}
+
+
+def write_files(folder, **files):
+    for name, text in files.items():
+        path = folder / name.replace("__", "/")
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    return folder
+
+
+def test_the_authors_files_in_a_copy_of_a_public_package_win_over_ours(tmp_path):
+    his = write_files(tmp_path / "his", launch__maze="his", launch__world="his", urdf="a file")
+    ours = write_files(tmp_path / "ours", launch__world="ours", nodes__drive="ours", urdf__robot="ours")
+    complete_package(his, ours, replaces_robots=False)
+    assert files_of(his) == {
+        "launch/maze": "his",
+        "launch/world": "his",
+        "nodes/drive": "ours",
+        "urdf": "a file",
+    }
+    assert files_of(ours)["launch/world"] == "ours"
+
+
+def test_robots_that_need_missing_parts_are_replaced(tmp_path):
+    his, ours = tmp_path / "his", tmp_path / "ours"
+    for folder in (his, ours):
+        write_files(folder, **{"urdf__robot.xacro": folder.name, "launch__robot.launch": folder.name})
+    complete_package(his, ours, replaces_robots=True)
+    assert files_of(his) == {"urdf/robot.xacro": "ours", "launch/robot.launch": "his"}
+    assert (ours / "urdf/robot.xacro").read_text() == "ours"

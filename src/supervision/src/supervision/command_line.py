@@ -52,7 +52,7 @@ def parse(
         allow_abbreviations: Accept unique prefixes of options.
     """
     parser = _parser(kind, script, allow_abbreviations)
-    if any(item.metadata.get("nargs") == "*" for item in fields(kind)):  # type: ignore[arg-type]
+    if any(item.metadata.get("nargs") in ("*", "?") for item in fields(kind)):  # type: ignore[arg-type]
         if not {"-h", "--help"}.isdisjoint(words):  # the next method prints no placeholders
             parser.parse_args(["--help"])
         given = vars(parser.parse_intermixed_args(words))

@@ -13,20 +13,24 @@ from cockpit.process import FREE_PORT, CockpitProcess
 from evaluation.verdict import Verdict
 from planar import PlanarError
 from run_project.checkout.dry_run import recorded_calls
-from run_project.checkout.layout import (
-    Checkout,
-    ProjectError,
-    choose_script,
-    is_home_service_script,
-    read_checkout,
-)
+from run_project.checkout.entry import choose_script, is_home_service_script
+from run_project.checkout.layout import Checkout, ProjectError, read_checkout
+from run_project.checkout.needs import missing_packages, unset_variables
 from run_project.checkout.placement import READ_SUFFIXES, Placement, best_placement
 from run_project.course.launch_plan import CourseProject, ProjectLaunchPlan, find_launch_plan
 from run_project.judging.log_errors import find_log_errors
 from run_project.judging.run_record import ProjectRunRecord
 from run_project.judging.verdict import judge
 from run_project.options import ProjectOptions, parse
-from run_project.preparation.building import BuildError, Workspace, build, copy_checkout, environment
+from run_project.preparation.building import (
+    DEFAULT_VARIABLES,
+    BuildError,
+    Workspace,
+    build,
+    copy_checkout,
+    environment,
+    is_installed,
+)
 from run_project.preparation.private_root import private_mount_command
 from run_project.ros.headless_rviz import RVIZ_VARIABLE
 from run_project.ros.project_run import ProjectCommand, ProjectRun
@@ -92,11 +96,14 @@ def run(options: ProjectOptions) -> int:
         plan = _launch_plan(checkout, options)
         script = _prepare_script(checkout, options, plan, work.path)
         texts = read_path_texts(checkout, script)
+        needs = _lacking(checkout, script, texts[script])
         placement = find_placement(checkout, script, texts, work.path, options.script_arguments)
         folder = create_run_folder(options.output.resolve(), "run_project")
         logs = folder / "log"
         display.print(f"{checkout.root}: {checkout.kind.value}, {len(checkout.packages)} packages in it")
         _warn_about_missing_files(checkout, display)
+        for need in needs:
+            display.print(f"warning: {need}")
         display.print(f"logs in {logs}")
         workspace = copy_checkout(checkout, placement, work.path)
         display.show("building ...")
@@ -122,6 +129,19 @@ def _warn_about_missing_files(checkout: Checkout, display: Display) -> None:
             display.print(f"warning: {lacking}: {', '.join(files)}")
 
 
+def _lacking(checkout: Checkout, script: str, text: str) -> List[str]:
+    """What a script needs and does not find, in sentences."""
+    packages = missing_packages(text, lambda name: name in checkout.packages or is_installed(name))
+    variables = unset_variables(text, {*os.environ, *DEFAULT_VARIABLES})
+    return [
+        *(
+            f"{script} starts a part of {name}, which is neither in the checkout nor here"
+            for name in packages
+        ),
+        *(f"{script} uses ${name}, which is not set: set it as its author has it" for name in variables),
+    ]
+
+
 def _launch_plan(checkout: Checkout, options: ProjectOptions) -> Optional[ProjectLaunchPlan]:
     """The launch plan of a course project without a script; None if a script is to be run."""
     named = options.script in [project.value for project in CourseProject]
@@ -138,9 +158,9 @@ def _launch_plan(checkout: Checkout, options: ProjectOptions) -> Optional[Projec
 def _prepare_script(
     checkout: Checkout, options: ProjectOptions, plan: Optional[ProjectLaunchPlan], work: Path
 ) -> str:
-    """Path of the script, relative to the checkout; for a course project one is generated in ``work``."""
+    """Path of the script, relative to the checkout; for anything else one is generated in ``work``."""
     if plan is None:
-        return str(choose_script(checkout, options.script))
+        return str(choose_script(checkout, options.script, work))
     made = work / f"{plan.project.value}.sh"
     made.write_text(plan.script())
     made.chmod(0o755)
@@ -148,7 +168,9 @@ def _prepare_script(
 
 
 def _script_name(script: str, plan: Optional[ProjectLaunchPlan]) -> str:
-    return script if plan is None else plan.project.value
+    if plan is not None:
+        return plan.project.value
+    return Path(script).name if Path(script).is_absolute() else script
 
 
 def find_placement(
@@ -262,6 +284,7 @@ def run_command(
     except RunInterruptedError as error:
         failure, is_interrupted = str(error), True
     record = run.observer.record
+    record.measure_distances()
     verdict = _verdict_of(run, failure, is_home_service_script(about["script"]), options)
     errors = find_log_errors(folder / "log")
     found = {
@@ -286,7 +309,8 @@ def _verdict_of(
     run: ProjectRun, failure: Optional[str], requires_goals: bool, options: ProjectOptions
 ) -> Verdict:
     if run.user is None:
-        return judge(run.observer.record, failure, requires_goals, options.expect)
+        limit = options.timeout if run.is_over_time else None
+        return judge(run.observer.record, failure, requires_goals, options.expect, limit)
     return run.user.results.verdict(failure)
 
 

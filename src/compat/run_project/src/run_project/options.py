@@ -50,7 +50,8 @@ class ProjectOptions(ViewOptions):
         type=Path,
     )
     script: Optional[str] = argument(
-        "shell script to run (default: home_service.sh), or go_chase_it, where_am_i, map_my_world",
+        "script, launch file or 'roslaunch ...' to run (default: home_service.sh), or go_chase_it, "
+        "where_am_i, map_my_world",
         default=None,
         metavar="SCRIPT",
         nargs="?",

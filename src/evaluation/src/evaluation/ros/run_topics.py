@@ -56,6 +56,7 @@ class EventTopic(NamedTuple):
 CLOCK = EventTopic("/clock", Clock, read.clock, (kinds.ClockAdvanced,), queue_size=1)
 CONTACTS = EventTopic("contacts", String, read.contacts, (kinds.BodiesTouched,), True)
 TRUTH = EventTopic("base_pose_ground_truth", Odometry, read.truth, (TruthUpdated,), True)
+ESTIMATE = EventTopic("amcl_pose", PoseWithCovarianceStamped, read.estimate, (kinds.EstimateUpdated,), True)
 GOAL_REQUESTS = EventTopic("move_base/goal", MoveBaseActionGoal, read.goal_request, (kinds.GoalRequested,))
 GOAL_STATUSES = EventTopic("move_base/status", GoalStatusArray, read.statuses, (kinds.GoalStatusUpdated,))
 GOAL_RESULTS = EventTopic("move_base/result", MoveBaseActionResult, read.goal_end, (kinds.GoalEnded,), True)
@@ -66,7 +67,7 @@ TOPICS = (
     EventTopic(f"{SIMULATOR}/{WAITING_FOR_TOPIC}", String, read.awaited, (kinds.NodesAwaited,)),
     EventTopic("/simulation/remarks", String, read.remarks, (kinds.RemarksUpdated,)),
     EventTopic("/tf", TFMessage, read.transforms, (kinds.OdometryUpdated, kinds.CorrectionUpdated)),
-    EventTopic("amcl_pose", PoseWithCovarianceStamped, read.estimate, (kinds.EstimateUpdated,), True),
+    ESTIMATE,
     EventTopic("map", OccupancyGridArrays, read.grid, (kinds.MapPublished,)),
     GOAL_REQUESTS,
     GOAL_STATUSES,

@@ -15,7 +15,6 @@ from run_project.stand_ins import PACKAGE_FOLDER
 # Folders of builds and version control: neither read nor copied.
 BUILD_AND_VCS_FOLDERS = frozenset((".git", ".hg", ".svn", "build", "devel", "install", "logs"))
 SCRIPTS = (".sh", ".bash")
-HOME_SERVICE = "home_service"
 LFS_POINTER = b"version https://git-lfs"
 _MAP_IMAGE = re.compile(r"^image:\s*[\"']?([^\s\"']+)", re.MULTILINE)
 _MAP_RESOLUTION = re.compile(r"^resolution:", re.MULTILINE)
@@ -56,6 +55,16 @@ class Checkout:
     def scripts(self) -> List[Path]:
         """All shell scripts."""
         return [Path(file) for file in self.files if file.endswith(SCRIPTS)]
+
+    def launch_files(self) -> List[Path]:
+        """All launch files in packages."""
+        files = (Path(file) for file in self.files if file.endswith(".launch"))
+        return [file for file in files if self.package_of(file) is not None]
+
+    def package_of(self, file: Path) -> Optional[str]:
+        """Name of the package that contains a file; None if it is in none."""
+        inside = {name: folder for name, folder in self.packages.items() if folder in file.parents}
+        return max(inside, key=lambda name: len(inside[name].parts)) if inside else None
 
     def programs(self) -> List[Path]:
         """All shell scripts, and all other files that start with ``#!``."""
@@ -119,51 +128,11 @@ def read_checkout(root: Path) -> Checkout:
     return Checkout(root, kind, workspace, packages, files, substitutes)
 
 
-def choose_script(checkout: Checkout, wanted: Optional[str]) -> Path:
-    """Select the script to run.
-
-    Args:
-        checkout: The project.
-        wanted: Path relative to the checkout, or name with or without ``.sh``; None for home_service.sh.
-
-    Returns:
-        Path relative to the checkout.
-
-    Raises:
-        ProjectError: There is no such script; the text lists the scripts of the checkout.
-    """
-    scripts = checkout.scripts()
-    if wanted is None:
-        chosen = [script for script in scripts if script.stem == HOME_SERVICE] or [
-            script for script in scripts if is_home_service_script(str(script))
-        ]
-    else:
-        chosen = [Path(file) for file in checkout.files if file == os.path.normpath(wanted)] or [
-            Path(file) for file in checkout.files if Path(file).name in (wanted, f"{wanted}.sh")
-        ]
-    if chosen:
-        return min(chosen, key=lambda script: (len(script.parts), str(script)))
-    names = ", ".join(str(script) for script in scripts) or "none"
-    raise ProjectError(
-        f"{checkout.root}: no script {wanted or HOME_SERVICE + '.sh'} in this checkout; "
-        f"name one of its scripts: {names}"
-    )
-
-
-def is_home_service_script(script: str) -> bool:
-    """Whether a script, by its name, drives the robot; other scripts may only show a marker."""
-    return _letters_only(HOME_SERVICE) in _letters_only(Path(script).stem)
-
-
 def _starts_with(path: Path, content: bytes) -> bool:
     if not path.is_file():
         return False
     with path.open("rb") as file:
         return file.read(len(content)) == content
-
-
-def _letters_only(text: str) -> str:
-    return "".join(letter for letter in text.lower() if letter.isalpha())
 
 
 def _files(root: Path) -> Iterator[str]:

@@ -16,6 +16,7 @@ REPOSITORIES: Mapping[str, Tuple[str, ...]] = {
     "gazebo_ros_pkgs": ("gazebo_ros", "gazebo_msgs"),
 }
 IGNORED = "CATKIN_IGNORE"
+ROBOTS = (".xacro", ".urdf")
 
 
 def find_substitutes(root: Path, script_texts: Iterable[str], stand_ins: Path) -> Dict[Path, Path]:
@@ -53,6 +54,25 @@ def link_substitutes(substitutes: Mapping[Path, Path], checkout: Path) -> None:
         (target / IGNORED).touch()
         for entry in package.iterdir():
             (target / entry.name).symlink_to(entry)
+
+
+def complete_package(package: Path, stand_in: Path, replaces_robots: bool) -> None:
+    """Link what the stand-in has more into a package of the copy: files of the author's take precedence.
+
+    Args:
+        package: Folder of the package.
+        stand_in: Folder of this workspace's package of the same name.
+        replaces_robots: Robot descriptions of the stand-in take precedence.
+    """
+    for file in sorted(stand_in.rglob("*")):
+        target = package / file.relative_to(stand_in)
+        if not file.is_file() or any(parent.is_file() for parent in target.parents):
+            continue
+        if replaces_robots and file.suffix in ROBOTS:
+            target.unlink(missing_ok=True)
+        if not target.exists() and not target.is_symlink():
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.symlink_to(file)
 
 
 def substitute_files(substitutes: Mapping[Path, Path]) -> Iterable[str]:

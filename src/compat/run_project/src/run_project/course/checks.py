@@ -1,9 +1,13 @@
-"""Results of the checks of a course project."""
+"""Checks of a course project: what they measure, and their results."""
 
+import math
 from dataclasses import dataclass, field
 from typing import List, Optional
 
+import numpy as np
+
 from evaluation.verdict import Verdict
+from planar import Pose2
 
 
 @dataclass(frozen=True)
@@ -38,3 +42,14 @@ class CheckResults:
         return Verdict(
             0 < passed == len(self.checks), f"{passed} of {len(self.checks)} checks passed: {summary}"
         )
+
+
+def camera_pose(matrix: np.ndarray, is_optical: bool) -> Pose2:
+    """Pose of a camera in the plane, x in its direction of view.
+
+    Args:
+        matrix: Pose (4, 4) of the camera's frame in the frame of the base.
+        is_optical: Whether the frame has z in the direction of view, as in REP 103, instead of x.
+    """
+    view = matrix[:3, 2 if is_optical else 0]
+    return Pose2(float(matrix[0, 3]), float(matrix[1, 3]), math.atan2(view[1], view[0]))

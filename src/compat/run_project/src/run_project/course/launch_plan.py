@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Dict, Iterator, Mapping, Optional, Set, Tuple
 
+from run_project.checkout.vendored import is_vendored
+
 _COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 _ARGUMENT = re.compile(r"<arg\b[^>]*>")
 _NAME = re.compile(r'\bname\s*=\s*["\']([^"\']+)')
@@ -65,12 +67,15 @@ def find_launch_plan(
         The launch plan, or None if no launch file starts the nodes of the project.
     """
     launches = dict(_launch_files(packages, texts))
+    # Copies of public packages start the nodes of every course project: they make none of it.
+    own = {name: folder for name, folder in packages.items() if not is_vendored(name)}
+    candidates = launches if wanted is not None else dict(_launch_files(own, texts))
     for project, (signature, name) in _SIGNATURES.items():
         if wanted not in (None, project.value):
             continue
         started = [
             file
-            for file, text in launches.items()
+            for file, text in candidates.items()
             if signature.search(text)
             or (Path(file).stem == name and any(signature.search(part) for part in _included(text, launches)))
         ]

@@ -10,12 +10,15 @@ from evaluation.events import (
     SHOW,
     BodiesTouched,
     ClockAdvanced,
+    EstimateUpdated,
     GoalEnded,
     GoalRequested,
     GoalStatusUpdated,
     MarkerUpdated,
     TruthUpdated,
 )
+from planar import Pose2
+from run_project.judging.map_alignment import MapAlignment
 
 STATUS_NAMES = (
     "pending",
@@ -34,6 +37,10 @@ FINAL_STATUSES = frozenset(("preempted", "succeeded", "aborted", "rejected", "re
 # as a teleport [m].
 SAME_PLACE_DISTANCE = 0.1
 JUMP_DISTANCE = 0.5
+# Displacement between two poses of a robot that drives [m].
+LEAST_STEP = 1e-4
+# Time without events and motion after which a project is not busy any more [s].
+REST_SECONDS = 30.0
 # Distance from a goal within which a project may cancel it as reached [m].
 CANCELLED_GOAL_TOLERANCE = 0.5
 
@@ -48,7 +55,7 @@ class ProjectGoal:
         place: x, y in the frame of the goal [m]; None if the goal message was not received.
         sent: Simulated time at which it was sent [s].
         ended: Simulated time at which it ended [s].
-        distance: True distance between robot and goal at that time [m].
+        distance: True distance between robot and goal at that time, in the frame of the map [m].
     """
 
     status: str = "pending"
@@ -96,6 +103,8 @@ class ProjectRunRecord:
         distance_driven: Path length of the robot without teleports [m].
         simulated_time: Current time [s].
         last_event_time: Simulated time of the last goal or marker event [s].
+        last_motion_time: Simulated time at which the robot last moved [s].
+        alignment: Where the frame of the goals lies in the world.
     """
 
     log: Callable[[str], None]
@@ -105,7 +114,10 @@ class ProjectRunRecord:
     distance_driven: float = 0.0
     simulated_time: float = 0.0
     last_event_time: float = 0.0
-    _position: Optional[Tuple[float, float]] = None
+    last_motion_time: float = 0.0
+    alignment: MapAlignment = field(default_factory=MapAlignment)
+    _base: Optional[Pose2] = None
+    _ended_at: Dict[str, Pose2] = field(default_factory=dict)
     _shown: Dict[Tuple[str, int], Tuple[float, float]] = field(default_factory=dict)
     _reported_events: Set[Tuple[bool, int, int]] = field(default_factory=set)
 
@@ -113,6 +125,7 @@ class ProjectRunRecord:
         """Subscribe to events."""
         events.subscribe(ClockAdvanced, self._on_clock)
         events.subscribe(TruthUpdated, self._on_truth)
+        events.subscribe(EstimateUpdated, self._on_estimate)
         events.subscribe(BodiesTouched, self._on_contact)
         events.subscribe(GoalRequested, self._on_goal)
         events.subscribe(GoalStatusUpdated, self._on_status)
@@ -130,6 +143,16 @@ class ProjectRunRecord:
         return bool(self.markers) and not self._shown
 
     @property
+    def is_busy(self) -> bool:
+        """Whether the robot has moved, or goals or markers have changed, a short time ago."""
+        return self.simulated_time - max(self.last_motion_time, self.last_event_time) < REST_SECONDS
+
+    @property
+    def is_object_never_moved(self) -> bool:
+        """Whether markers were shown, and each stays where it was shown first."""
+        return bool(self.markers) and len(self.markers) == len(self._shown)
+
+    @property
     def goals_of_two_rounds(self) -> int:
         """Number of goals after which a sequence of positions was visited twice; 0 if none was.
 
@@ -145,9 +168,19 @@ class ProjectRunRecord:
                     return sum(len(earlier.goals) for earlier in visits[: end - 1]) + visit.tries
         return 0
 
+    def measure_distances(self) -> None:
+        """Determine the distances of the goals with what is known of the map's frame by now."""
+        frame = self.alignment.map_in_world()
+        for name, base in self._ended_at.items():
+            goal = self.goals[name]
+            if goal.place is not None:
+                goal.distance = round((frame @ Pose2(*goal.place)).distance_to(base), 3)
+
     def findings(self) -> Dict[str, Any]:
         """Entries of result.json."""
+        frame = self.alignment.map_in_world()
         return {
+            "map_in_world": [round(value, 3) for value in (frame.x, frame.y, frame.yaw)],
             "goals": [vars(goal) for goal in self.goals.values()],
             "markers": self.markers,
             "distance_driven": round(self.distance_driven, 2),
@@ -159,11 +192,15 @@ class ProjectRunRecord:
 
     def _on_truth(self, event: TruthUpdated) -> None:
         """Update the true position; teleports do not count as driven."""
-        position = (event.pose.x, event.pose.y)
-        if self._position is not None:
-            step = math.dist(self._position, position)
+        if self._base is not None:
+            step = self._base.distance_to(event.pose)
             self.distance_driven += step if step < JUMP_DISTANCE else 0.0
-        self._position = position
+            self.last_motion_time = self.simulated_time if step > LEAST_STEP else self.last_motion_time
+        self._base = event.pose
+
+    def _on_estimate(self, event: EstimateUpdated) -> None:
+        if self._base is not None:
+            self.alignment.add(event.pose, self._base)
 
     def _on_contact(self, event: BodiesTouched) -> None:
         """Add contacts; only the first with each body is logged."""
@@ -185,8 +222,9 @@ class ProjectRunRecord:
         self._on_goal_change()
         if status in FINAL_STATUSES:
             goal.ended = self.simulated_time
-            if goal.place and self._position:
-                goal.distance = round(math.dist(goal.place, self._position), 3)
+            if self._base is not None:
+                self._ended_at[event.identity] = self._base
+                self.measure_distances()
         detail = f": {event.text}" if event.text and status not in ("active", "succeeded") else ""
         number = list(self.goals).index(event.identity) + 1
         self.log(f"goal {number}{at_position(goal.place)} {status}{detail}")

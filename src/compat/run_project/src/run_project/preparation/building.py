@@ -12,7 +12,7 @@ from typing import Callable, Dict, Set, Tuple
 from planar import PlanarError
 from run_project.checkout.layout import BUILD_AND_VCS_FOLDERS, Checkout
 from run_project.checkout.placement import Placement
-from run_project.checkout.substitutes import link_substitutes
+from run_project.checkout.substitutes import complete_package, link_substitutes
 from run_project.preparation.python2 import to_python3
 from run_project.preparation.selection import select_packages
 from run_project.stand_ins import PACKAGE_FOLDER, STAND_INS
@@ -117,12 +117,12 @@ def build(workspace: Workspace, log: Path, report: Callable[[str], None]) -> Non
         BuildError: The workspace cannot be configured.
     """
     stand_ins = {folder.name: folder for folder in PACKAGE_FOLDER.parent.iterdir()}
-    selection = select_packages(workspace.packages, stand_ins, _is_installed)
+    selection = select_packages(workspace.packages, stand_ins, is_installed)
     for name in selection.replaced:
-        # With CATKIN_IGNORE, catkin and rospack find the package of this workspace instead.
-        (workspace.packages[name] / "CATKIN_IGNORE").touch()
+        complete_package(workspace.packages[name], stand_ins[name], name in selection.without_parts)
+    workspace.unbuilt.update(selection.replaced)
     workspace.missing.update(selection.replaced)
-    _report_packages("replaced by a package of this workspace:", selection.replaced, report)
+    _report_packages("programs replaced by those of this workspace:", selection.replaced, report)
     _exclude(workspace, selection.unbuilt, report)
     for name, users in selection.absent.items():
         _create_placeholder(workspace, name)
@@ -160,7 +160,8 @@ def environment(workspace: Workspace) -> Dict[str, str]:
     return {**DEFAULT_VARIABLES, **variables, MODEL_PATH: ":".join(filter(None, model_path))}
 
 
-def _is_installed(package: str) -> bool:
+def is_installed(package: str) -> bool:
+    """Whether catkin finds a package, of this workspace or of the system."""
     folders = (f"share/{package}/cmake", f"lib/cmake/{package}", f"lib/*/cmake/{package}")
     prefixes = [*filter(None, os.environ.get("CMAKE_PREFIX_PATH", "").split(":")), "/usr"]
     return any(any(Path(prefix).glob(folder)) for prefix in prefixes for folder in folders)

@@ -5,15 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Callable, Dict, List, Mapping, Set
 
-# Packages that projects vendor as source. They need old versions of Boost or pluginlib, and the simulation
-# provides their function.
-VENDORED_PACKAGES = re.compile(
-    r"(openslam_gmapping|gmapping|slam_gmapping|turtlebot_.+|kobuki_.+|yocs_.+|yujin_.+|ecl_.+|create_.+|"
-    r"amcl|map_server|move_base|move_slow_and_clear|navfn|nav_core|global_planner|base_local_planner|"
-    r"dwa_local_planner|costmap_2d|voxel_grid|carrot_planner|clear_costmap_recovery|rotate_recovery|"
-    r"fake_localization|robot_pose_ekf|depthimage_to_laserscan|gazebo_ros|gazebo_ros_control|gazebo_plugins|"
-    r"gazebo_dev|gazebo_msgs|explore|explore_lite|map_merge|rtabmap|rtabmap_ros|realsense_.+|freenect_.+|openni.*)"
-)
+from run_project.checkout.vendored import is_vendored
+
 _COMPILED = re.compile(
     r"^\s*(?:add_executable|add_library|cuda_add_\w+|generate_messages)\s*\(", re.MULTILINE | re.IGNORECASE
 )
@@ -27,12 +20,14 @@ class PackageSelection:
     """Packages of a project that are not built as they are.
 
     Attributes:
-        replaced: Package that is replaced by one of this workspace -> reason.
+        replaced: Package that is not built but completed with the files of this workspace's -> reason.
+        without_parts: Those of them whose robots need packages that are not installed.
         unbuilt: Package of which only files, as launch files and worlds, are used -> reason.
         absent: Dependency that is not installed -> packages that declare it.
     """
 
     replaced: Dict[str, str]
+    without_parts: Set[str]
     unbuilt: Dict[str, str]
     absent: Dict[str, List[str]]
 
@@ -48,6 +43,7 @@ def select_packages(
         is_installed: Whether catkin finds a package outside of the project.
     """
     replaced: Dict[str, str] = {}
+    without_parts: Set[str] = set()
     unbuilt: Dict[str, str] = {}
     absent: Dict[str, List[str]] = {}
     for name, folder in sorted(folders.items()):
@@ -58,15 +54,16 @@ def select_packages(
         )
         if name in stand_ins and lost_parts:
             replaced[name] = f"its robots need {', '.join(lost_parts)}, which is not installed"
+            without_parts.add(name)
         elif name in stand_ins and is_compiled and _has_nodes_or_messages(stand_ins[name]):
             replaced[name] = "its sources do not build with current libraries"
-        elif is_compiled and VENDORED_PACKAGES.fullmatch(name):
+        elif is_compiled and is_vendored(name):
             unbuilt[name] = "its sources do not build with current libraries; not needed in simulation"
         else:
             for other in sorted(_components(cmake) - set(folders)):
                 if not is_installed(other):
                     absent.setdefault(other, []).append(name)
-    return PackageSelection(replaced, unbuilt, absent)
+    return PackageSelection(replaced, without_parts, unbuilt, absent)
 
 
 def _has_nodes_or_messages(stand_in: Path) -> bool:

@@ -13,6 +13,7 @@ from evaluation.ros.message_events import Reception, marker
 from evaluation.ros.run_topics import (
     CLOCK,
     CONTACTS,
+    ESTIMATE,
     GOAL_REQUESTS,
     GOAL_RESULTS,
     GOAL_STATUSES,
@@ -59,7 +60,7 @@ class Observer:
 
     def start(self) -> None:
         """Subscribe to the topics of every run. This process must be a ROS node."""
-        self._topics.open((CLOCK, CONTACTS, TRUTH))
+        self._topics.open((CLOCK, CONTACTS, TRUTH, ESTIMATE))
         # Before the project starts: some nodes publish once, as soon as they have a subscriber.
         self._subscribe_markers(MARKERS)
         self._subscribe_goals("/move_base/goal")

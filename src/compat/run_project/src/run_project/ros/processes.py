@@ -1,14 +1,15 @@
 """Inspection and priority of a project's processes."""
 
 import contextlib
-import time
 from pathlib import Path
-from typing import List
+from typing import Dict, List, Tuple
 
 import psutil
 
-# A process busy-waits if it uses this share of a core for this time [s]; it gets this niceness.
-BUSY_CPU_SHARE, BUSY_SECONDS, BUSY_NICENESS = 0.3, 5.0, 15
+# A process busy-waits if its main thread uses this share of a core for this time [s] and gives it up less
+# often than this within a second of it: one that also waits for messages does so more often.
+BUSY_CPU_SHARE, BUSY_SECONDS, RESTS_PER_CPU_SECOND = 0.3, 5.0, 5.0
+BUSY_NICENESS = 15
 SHELLS = ("", "bash", "sh", "dash", "zsh")
 
 
@@ -18,15 +19,32 @@ def waits_for_input(process: psutil.Process) -> bool:
     return call[:2] in (["0", "0x0"], ["63", "0x0"])
 
 
-def lower_priority_of_busy_processes(processes: List[psutil.Process]) -> None:
-    """Raise the niceness of nodes that never sleep, so that the simulator gets the cores."""
-    for process in processes:
-        with contextlib.suppress(psutil.Error):
-            times, age = process.cpu_times(), time.time() - process.create_time()
-            is_busy = age > BUSY_SECONDS and times.user + times.system > BUSY_CPU_SHARE * age
-            if is_busy and process.nice() < BUSY_NICENESS:
-                process.nice(BUSY_NICENESS)
-                _lower_session_priority(process)
+class BusyProcesses:
+    """Raises the niceness of nodes that never sleep, so that the simulator gets the cores."""
+
+    def __init__(self) -> None:
+        self._before: Dict[int, Tuple[float, float, int]] = {}
+
+    def lower_priority(self, processes: List[psutil.Process], now: float) -> None:
+        """Look at the processes of a project again, at a wall time [s]; to be called every few seconds."""
+        for process in processes:
+            with contextlib.suppress(psutil.Error):
+                if process.nice() < BUSY_NICENESS and self._is_spinning(process, now):
+                    process.nice(BUSY_NICENESS)
+                    _lower_session_priority(process)
+
+    def _is_spinning(self, process: psutil.Process, now: float) -> bool:
+        """Whether the main thread has used a core since it was last looked at, without giving it up."""
+        main = next((thread for thread in process.threads() if thread.id == process.pid), None)
+        if main is None:
+            return False
+        state = (now, main.user_time + main.system_time, process.num_ctx_switches().voluntary)
+        before = self._before.setdefault(process.pid, state)
+        seconds, used, rests = (new - old for new, old in zip(state, before))
+        if seconds < BUSY_SECONDS:
+            return False
+        self._before[process.pid] = state
+        return used > BUSY_CPU_SHARE * seconds and rests < RESTS_PER_CPU_SECOND * used
 
 
 def _lower_session_priority(process: psutil.Process) -> None:

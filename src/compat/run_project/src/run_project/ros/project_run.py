@@ -12,9 +12,11 @@ from typing import Dict, List, Mapping, Optional, Sequence, Set
 import psutil
 import rospy
 
+from run_project.real_time_limit import RealTimeLimit
 from run_project.ros.observer import Observer
-from run_project.ros.processes import lower_priority_of_busy_processes, program_of, waits_for_input
+from run_project.ros.processes import BusyProcesses, program_of, waits_for_input
 from run_project.ros.scripted_user import ScriptedUser
+from run_project.ros.simulator_speed import set_simulator_speed
 from run_project.stand_ins.terminal import WindowLogs
 from supervision.display import Display
 from supervision.errors import LaunchError
@@ -65,6 +67,7 @@ class ProjectRun:
     Attributes:
         observer: Records what the project does.
         user: Performs the interaction of a course project; None for a script.
+        is_over_time: Whether the run was cut short by the time limit.
     """
 
     def __init__(
@@ -85,6 +88,9 @@ class ProjectRun:
         self._waiting_for_input: Set[int] = set()
         self._windows = WindowLogs(logs)
         self._last_event_wall = time.monotonic()
+        self.is_over_time = False
+        self._busy = BusyProcesses()
+        self._limit = RealTimeLimit(float(str(parameters["/gazebo/speed"])), set_simulator_speed)
 
     def __enter__(self) -> "ProjectRun":
         adopt_orphans()
@@ -141,14 +147,17 @@ class ProjectRun:
             Why the run was cut short, or None.
         """
         deadline = time.monotonic() + timeout
+        self._limit.start(time.monotonic())
         script = self._start_script()
         observer, had_nodes, latest_enter = self.observer, False, time.monotonic()
         moved_wall, moved_time = time.monotonic(), -1.0
         while True:
             now = time.monotonic()
             observer.discover_topics()
-            for window in self._windows.opened():
+            windows = self._windows.opened()
+            for window in windows:
                 self._log_event(f"{observer.simulated_time:7.1f} s  window {window}")
+            self._limit.update(now, _is_a_script_sleeping(), bool(windows))
             self._display.show(observer.status())
             if observer.simulated_time != moved_time:
                 moved_wall, moved_time = now, observer.simulated_time
@@ -156,7 +165,7 @@ class ProjectRun:
                 latest_enter = now
                 _press_enter(script)
             processes = self._project_processes()
-            lower_priority_of_busy_processes(processes)
+            self._busy.lower_priority(processes, now)
             self._report_waiting_programs(processes)
             has_nodes = bool(processes)
             had_nodes = had_nodes or has_nodes
@@ -164,6 +173,7 @@ class ProjectRun:
             if self._is_done(script.poll() is not None, now - self._last_event_wall, nodes_are_gone):
                 return self._script_failure(script.poll())
             if now > deadline:
+                self.is_over_time = True
                 return f"not done within {timeout:g} s of wall time"
             if now - moved_wall > STALLED_SECONDS:
                 what = (
@@ -251,6 +261,14 @@ class ProjectRun:
                 if str(self._project_command.work) in program and not program.endswith(SETUP_TOOL):
                     found.append(process)
         return found
+
+
+def _is_a_script_sleeping() -> bool:
+    for process in psutil.Process().children(recursive=True):
+        with contextlib.suppress(psutil.NoSuchProcess):
+            if process.name() == "sleep":
+                return True
+    return False
 
 
 def _press_enter(script: "subprocess.Popen[bytes]") -> None:

@@ -8,14 +8,18 @@ import rospy
 from gazebo_msgs.msg import ModelState, ModelStates
 from gazebo_msgs.srv import SetModelState, SpawnModel
 from geometry_msgs.msg import Pose
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import CameraInfo
 
 from planar import Pose2
 from planar_ros.messages.conversion import quaternion_of
+from planar_ros.messages.transforms import Transforms
+from run_project.course.checks import camera_pose
 
 if TYPE_CHECKING:
     from run_project.ros.scripted_user.user import ScriptedUser
 
-# Bearings of the ball from the robot's heading [rad].
+# Bearings of the ball from the camera's direction of view [rad].
 BEARINGS = (0.0, 0.35, -0.35)
 # Limits of the distance to the ball, clearance behind it [m], and the fraction of the distance to be covered.
 MAX_BALL_DISTANCE, MIN_BALL_DISTANCE, BACKGROUND_CLEARANCE, DISTANCE_FRACTION = 2.0, 0.8, 0.4, 0.5
@@ -23,7 +27,7 @@ MAX_BALL_DISTANCE, MIN_BALL_DISTANCE, BACKGROUND_CLEARANCE, DISTANCE_FRACTION = 
 CHASE_SECONDS, STOP_SECONDS = 30.0, 5.0
 # Displacement in one second below which the robot counts as stopped [m].
 STOPPED_DISTANCE = 0.02
-SERVICE_SECONDS = 30.0
+SERVICE_SECONDS, FRAMES_SECONDS = 30.0, 5.0
 RADIUS = 0.1
 PARKING_COORDINATE = 500.0
 _MATERIAL = "<material><diffuse>1 1 1 1</diffuse><emissive>1 1 1 1</emissive></material>"
@@ -44,10 +48,10 @@ def check_ball_chasing(user: "ScriptedUser") -> None:
         ball = _spawn_ball()
     _set_model_pose(ball, Pose2(PARKING_COORDINATE, PARKING_COORDINATE))
     _wait_until_stopped(user)
-    stops = False
+    stops, camera = False, _camera_on_robot(user)
     for bearing in BEARINGS:
         for is_last in (False, True):
-            is_chased, description = _place_ball(user, robot, ball, bearing)
+            is_chased, description = _place_ball(user, robot, ball, camera, bearing)
             stops = _wait_until_stopped(user)
             if is_chased or is_last:
                 user.add_check(is_chased, description)
@@ -56,16 +60,32 @@ def check_ball_chasing(user: "ScriptedUser") -> None:
     user.add_check(stops, "stopped without the ball" if stops else "did not stop without the ball")
 
 
-def _place_ball(user: "ScriptedUser", robot: str, ball: str, bearing: float) -> Tuple[bool, str]:
+def _camera_on_robot(user: "ScriptedUser") -> Pose2:
+    """Pose of the camera on the robot, x in the direction of view; that of the base if it is unknown."""
+    topics = user.find_topic("sensor_msgs/CameraInfo"), user.find_topic("nav_msgs/Odometry")
+    if None in topics:
+        return Pose2()
+    frame = rospy.wait_for_message(topics[0], CameraInfo, SERVICE_SECONDS).header.frame_id
+    base = rospy.wait_for_message(topics[1], Odometry, SERVICE_SECONDS).child_frame_id
+    transforms = Transforms()
+    user.wait(lambda: transforms.matrix(base, frame) is not None, FRAMES_SECONDS)
+    matrix = transforms.matrix(base, frame)
+    return Pose2() if matrix is None else camera_pose(matrix, "optical" in frame)
+
+
+def _place_ball(
+    user: "ScriptedUser", robot: str, ball: str, camera: Pose2, bearing: float
+) -> Tuple[bool, str]:
     """Place the ball and remove it; returns whether the robot approached it, and a description.
 
     Under load images arrive late and the robot may turn past the ball, so the caller repeats a failure once.
     """
-    _turn_towards_free_space(user, robot, bearing)
+    heading = camera.yaw + bearing
+    _turn_towards_free_space(user, robot, heading)
     distance = max(
-        min(MAX_BALL_DISTANCE, user.free_distance(bearing) - BACKGROUND_CLEARANCE), MIN_BALL_DISTANCE
+        min(MAX_BALL_DISTANCE, user.free_distance(heading) - BACKGROUND_CLEARANCE), MIN_BALL_DISTANCE
     )
-    at = user.base @ Pose2(distance * math.cos(bearing), distance * math.sin(bearing))
+    at = user.base @ camera @ Pose2(distance * math.cos(bearing), distance * math.sin(bearing))
     _set_model_pose(ball, at)
     is_chased = user.wait(partial(_is_near, user, at, distance * DISTANCE_FRACTION), CHASE_SECONDS)
     left = user.base.distance_to(at)

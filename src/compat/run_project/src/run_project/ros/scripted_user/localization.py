@@ -57,7 +57,10 @@ def check_localization(user: "ScriptedUser") -> None:
     user.sleep(SETTLE_SECONDS)
     estimate = transforms.lookup(global_frame, base_frame)
     assert estimate is not None
-    error = estimate.distance_to(user.base)
+    frame = user.alignment.map_in_world()
+    if frame != Pose2():
+        user.log(f"the map's origin lies at ({frame.x:.2f}, {frame.y:.2f}), {frame.yaw:.2f} rad in the world")
+    error = (frame @ estimate).distance_to(user.base)
     user.add_check(user.total_motion > MIN_MOTION, f"moved by {user.total_motion:.0f} m and rad")
     user.add_check(error < MAX_ERROR, f"localized within {error:.2f} m (at most {MAX_ERROR:g} m)")
 

@@ -12,9 +12,10 @@ from geometry_msgs.msg import Twist
 from sensor_msgs.msg import LaserScan
 
 from evaluation.event_stream import EventStream
-from evaluation.events import TruthUpdated
+from evaluation.events import EstimateUpdated, TruthUpdated
 from planar import PlanarError, Pose2
 from run_project.course.checks import CheckResults
+from run_project.judging.map_alignment import MapAlignment
 
 POLL_SECONDS = 0.05
 # Wall time for the robot to be spawned [s], and wall time allowed for a simulated second [s].
@@ -37,6 +38,7 @@ class ScriptedUser:
         folder: Run folder.
         is_done: Whether the procedure has ended.
         total_motion: True motion of the robot, metres plus radians.
+        alignment: Where the map's frame lies in the world.
     """
 
     def __init__(
@@ -46,6 +48,7 @@ class ScriptedUser:
         self.folder = folder
         self.is_done = False
         self.total_motion = 0.0
+        self.alignment = MapAlignment()
         self._log_event = log_event
         self._procedure = procedure
         self._is_over = threading.Event()
@@ -58,6 +61,7 @@ class ScriptedUser:
     def attach(self, events: EventStream) -> None:
         """Subscribe to events."""
         events.subscribe(TruthUpdated, self._on_truth)
+        events.subscribe(EstimateUpdated, self._on_estimate)
 
     def start(self) -> None:
         """Start the procedure. This process must be a ROS node."""
@@ -176,6 +180,10 @@ class ScriptedUser:
         if self._base is not None:
             self.total_motion += base.distance_to(self._base) + abs(_wrapped(base.yaw - self._base.yaw))
         self._base = base
+
+    def _on_estimate(self, event: EstimateUpdated) -> None:
+        if self._base is not None:
+            self.alignment.add(event.pose, self._base)
 
     def _on_scan(self, message: LaserScan) -> None:
         self._scan = message
