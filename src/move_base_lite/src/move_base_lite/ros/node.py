@@ -209,7 +209,7 @@ def _checked_settings(parameters) -> NavigatorSettings:
     for warning in found.warnings:
         if warning not in found.unknown:
             rospy.logwarn(warning)
-    report_without_effect(found.without_effect, found.unknown)
+    report_without_effect([*found.without_effect], found.unknown, is_strict())
     return found.settings
 
 
