@@ -114,7 +114,9 @@ def particles(settings):
         if number > 3:
             ranges[number : number + 30] = 0.6
         ranges[ranges >= RANGE_MAX] = RANGE_MAX
-        scan = Scan(float(number), -math.pi, 2.0 * math.pi / BEAMS, ranges.astype(np.float32), 0.05, RANGE_MAX)
+        scan = Scan(
+            float(number), -math.pi, 2.0 * math.pi / BEAMS, ranges.astype(np.float32), 0.05, RANGE_MAX
+        )
         localizer.update(odometry, scan)
     return localizer.particles
 
@@ -155,7 +157,11 @@ def test_defaults_are_not_named():
         ({"z_short": 0.2}, "laser_z_short", "laser_model_type is likelihood_field"),
         ({"beam_skip": True}, "do_beamskip", "laser_model_type is likelihood_field"),
         ({"strafe_from_translation": 0.1}, "odom_alpha5", "odom_model_type is diff"),
-        ({"tf_broadcast": False, "transform_tolerance": 0.5}, "transform_tolerance", "tf_broadcast is not set"),
+        (
+            {"tf_broadcast": False, "transform_tolerance": 0.5},
+            "transform_tolerance",
+            "tf_broadcast is not set",
+        ),
         ({"first_map_only": True}, "first_map_only", "use_map_topic is not set"),
     ],
 )
