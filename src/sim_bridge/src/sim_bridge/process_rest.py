@@ -61,6 +61,6 @@ def is_native(pid: int, proc: Path = PROC) -> bool:
         proc: Folder of the kernel's process information.
     """
     try:
-        return "python" not in os.path.basename(os.readlink(proc / str(pid) / "exe"))
+        return "python" not in Path(os.readlink(proc / str(pid) / "exe")).name
     except OSError:
         return False
