@@ -7,13 +7,15 @@ import time
 import pytest
 
 from sim_bridge.process_rest import ProcessThreads, is_native
-from sim_bridge.rest_barrier import MOST_NEWS, RECOVERY_SECONDS, RestBarrier
+from sim_bridge.rest_barrier import MOST_NEWS, OTHERS_PATIENCE_SECONDS, RECOVERY_SECONDS, RestBarrier
 
 PERIOD, QUIET, PATIENCE, LOOK = 0.05, 0.002, 5.0, 0.0005
 
 
 class Run:
     """A simulation with nodes that are busy until given wall times."""
+
+    AWAITED = frozenset({"amcl", "move_base", "planner", "spinning"})
 
     def __init__(self, **busy_until):
         self.barrier = RestBarrier(PERIOD, QUIET, PATIENCE)
@@ -22,7 +24,9 @@ class Run:
     def step(self, news_until=0.0):
         """Wait until the next step of 0.05 s may be taken; return the wall time that it took."""
         begun = self.wall
-        while not self.barrier.may_step(self.stamp, self.wall, self._nodes(), self.wall < news_until):
+        while not self.barrier.may_step(
+            self.stamp, self.wall, self._nodes(), self.AWAITED, self.wall < news_until
+        ):
             self.wall += LOOK
             assert self.wall - begun < 60.0, "the simulation stands still"
         self.stamp += PERIOD
@@ -42,7 +46,7 @@ def test_between_two_barriers_nothing_is_waited_for():
     run = Run(move_base=0.0)
     run.step()
     run.busy_until["move_base"] = 1.0
-    assert run.barrier.may_step(PERIOD / 2, run.wall, run._nodes(), False)
+    assert run.barrier.may_step(PERIOD / 2, run.wall, run._nodes(), run.AWAITED, False)
 
 
 def test_a_message_that_arrives_is_processed_before_time_passes():
@@ -61,6 +65,12 @@ def test_a_node_that_never_rests_is_given_up_and_the_others_are_waited_for():
     assert [*run.barrier.given_up] == ["spinning"]
     run.busy_until["amcl"] = run.wall + 0.02
     assert run.step() == pytest.approx(0.02 + QUIET, abs=2 * LOOK)
+
+
+def test_a_further_node_that_never_rests_is_given_up_soon():
+    run = Run(amcl=0.0, viewer=1e9)
+    assert run.step() == pytest.approx(OTHERS_PATIENCE_SECONDS, abs=0.01)
+    assert run.step() == pytest.approx(QUIET, abs=2 * LOOK)
 
 
 def test_a_node_that_is_late_once_is_waited_for_again():

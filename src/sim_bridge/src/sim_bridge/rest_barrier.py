@@ -1,20 +1,22 @@
 """Pace of simulated time beside nodes that do not take part in lock-step: time passes when they rest."""
 
-from dataclasses import dataclass, field
-from typing import Callable, Dict, List, Mapping, Optional
+from dataclasses import dataclass
+from typing import Callable, Container, Dict, Mapping, Optional
 
 # Time between two barriers [simulated s]; shorter than the period of a usual control loop.
 BARRIER_PERIOD = 0.05
 # Time for which all nodes must rest at a barrier [wall s]. A loop of roscpp that sleeps in simulated time
 # looks at the clock each millisecond.
 QUIET_SECONDS = 0.002
+# The same while nodes start, which look for each other with longer pauses.
+SETTLING_QUIET_SECONDS = 0.02
 # Time between two looks [wall s].
 LOOK_SECONDS = 0.0003
 # Messages of a node that floods do not hold the simulation: of so many looks at one barrier they may.
 MOST_NEWS = 20
 # Time after which a node that does not rest is given up, and for which it must then rest until it is waited
 # for again [wall s].
-PATIENCE_SECONDS, RECOVERY_SECONDS = 5.0, 2.0
+PATIENCE_SECONDS, OTHERS_PATIENCE_SECONDS, RECOVERY_SECONDS = 5.0, 0.5, 2.0
 
 
 @dataclass
@@ -24,13 +26,13 @@ class _Barrier:
     Attributes:
         begun: When the simulation reached it [wall s].
         quiet_since: Since when all nodes rest [wall s].
-        busy: Nodes that did not rest at the latest look.
+        busy: Node that did not rest at the latest look.
         news: Number of looks before which messages had arrived.
     """
 
     begun: float
     quiet_since: float
-    busy: List[str] = field(default_factory=list)
+    busy: str = ""
     news: int = 0
 
 
@@ -67,7 +69,13 @@ class RestBarrier:
         self._next, self._barrier = 0.0, None
 
     def may_step(
-        self, stamp: float, wall: float, nodes: Mapping[str, Callable[[], bool]], has_news: bool
+        self,
+        stamp: float,
+        wall: float,
+        nodes: Mapping[str, Callable[[], bool]],
+        awaited: Container[str],
+        has_news: bool,
+        is_settling: bool = False,
     ) -> bool:
         """Return whether the next step may be taken.
 
@@ -75,7 +83,10 @@ class RestBarrier:
             stamp: Present simulated time [s].
             wall: Wall clock [s].
             nodes: Functions that return whether a node rests, by its name.
+            awaited: The nodes for which the simulation has full patience; others may only take part in what
+                these do.
             has_news: Whether a message has arrived since the last call: a node may not have rested before.
+            is_settling: Whether nodes are starting.
         """
         if stamp < self._next - 1e-9:
             return True
@@ -85,23 +96,24 @@ class RestBarrier:
         elif has_news and barrier.news < MOST_NEWS:
             barrier.news, barrier.quiet_since = barrier.news + 1, wall
         self._recover(wall, nodes)
-        barrier.busy = [
-            name for name, is_resting in nodes.items() if name not in self.given_up and not is_resting()
-        ]
+        barrier.busy = next(
+            (name for name, rests in nodes.items() if name not in self.given_up and not rests()), ""
+        )
         if barrier.busy:
             barrier.quiet_since = wall
-            if wall - barrier.begun > self._patience:
-                self.given_up.update({name: wall for name in barrier.busy})
+            patience = self._patience if barrier.busy in awaited else OTHERS_PATIENCE_SECONDS
+            if wall - barrier.begun > patience:
+                self.given_up[barrier.busy] = wall
             return False
-        if wall - barrier.quiet_since < self._quiet:
+        if wall - barrier.quiet_since < (SETTLING_QUIET_SECONDS if is_settling else self._quiet):
             return False
         self._barrier = None
         self._next = stamp + self._period
         return True
 
-    def waiting_for(self) -> List[str]:
-        """Return the nodes that the simulation waits for."""
-        return self._barrier.busy if self._barrier else []
+    def waiting_for(self) -> str:
+        """Return a node that the simulation waits for; empty if there is none."""
+        return self._barrier.busy if self._barrier else ""
 
     def _recover(self, wall: float, nodes: Mapping[str, Callable[[], bool]]) -> None:
         """Wait again for nodes that have rested at each look for some time."""

@@ -68,18 +68,31 @@ class ConnectionCheck:
         names = set(chain(*(chain(*table.values()) for table in tables)))
         return names, set(tables[0].get(ANSWER_TOPIC, ()))
 
-    def local_process(self, name: str) -> Optional[int]:
+    def local_process(self, name: str = "") -> Optional[int]:
         """Return the process of a node on this machine; None without.
 
         Args:
-            name: Name of the node.
+            name: Name of the node; empty for the master.
         """
         try:
-            uri = _query(self._master, "lookupNode", name)
+            uri = _query(self._master, "lookupNode", name) if name else self._master
             pid = _query(uri, "getPid") if _is_local(uri) else None
         except _UNAVAILABLE:
             return None
         return pid if pid and pid != os.getpid() else None
+
+    def registrations(self) -> NodesByName:
+        """Return the topics and services of all nodes, by the name of the node; empty without the master."""
+        try:
+            tables = self._state()
+        except _UNAVAILABLE:
+            return {}
+        found: NodesByName = {}
+        for table in tables:
+            for entry, names in table.items():
+                for name in names:
+                    found.setdefault(name, []).append(entry)
+        return found
 
     def _state(self) -> Tuple[NodesByName, NodesByName, NodesByName]:
         published, subscribed, services = _query(self._master, "getSystemState")

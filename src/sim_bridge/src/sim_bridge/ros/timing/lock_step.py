@@ -91,6 +91,11 @@ class LockStep:
         return self._connections.unable
 
     @property
+    def is_answered(self) -> bool:
+        """Whether all synchronised nodes have answered the latest tick."""
+        return self._delivered or not self._coordinator.unanswered()
+
+    @property
     def awaited(self) -> Sequence[str]:
         """The nodes for whose answers simulated time is stopped."""
         return self._coordinator.unanswered() if self._blocked_since is not None else ()

@@ -102,7 +102,7 @@ class TimeControl:
         if 0.0 < self.speed <= REAL_TIME:
             return True
         self._paced.set_nodes(self._lock_step.unable)
-        return self._paced.may_step(self._scene.stamp)
+        return self._paced.may_step(self._scene.stamp, self._lock_step.is_answered)
 
     def _wait(self, seconds: float) -> bool:
         """Send what has been published, wait for calls, at most ``seconds``, and return False."""
