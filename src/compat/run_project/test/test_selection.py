@@ -1,3 +1,5 @@
+import pytest
+
 from run_project.preparation.selection import select_packages
 
 COMPILED = "find_package(catkin REQUIRED COMPONENTS {0})\nadd_executable(x x.cpp)\n"
@@ -42,8 +44,13 @@ def test_launch_packages_of_the_project_take_precedence_but_vendored_programs_ar
         **stand_in(tmp_path, "gmapping", "nodes", "launch"),
     }
     selection = choose(folders, ours)
-    assert sorted(selection.replaced) == ["gmapping"]
+    assert (sorted(selection.completed), selection.replaced) == (["gmapping"], {})
     assert sorted(selection.unbuilt) == ["turtlebot_navigation"]
+
+
+@pytest.mark.parametrize("name", ["turtlebot_waiter", "kobuki_dance", "create_map", "explore"])
+def test_an_own_package_is_built_whatever_its_name_begins_with(tmp_path, name):
+    assert choose(package(tmp_path, name, COMPILED.format("roscpp"))).unbuilt == {}
 
 
 def test_a_dependency_that_is_not_installed_is_reported_with_its_users(tmp_path):

@@ -123,6 +123,11 @@ def build(workspace: Workspace, log: Path, report: Callable[[str], None]) -> Non
         (workspace.packages[name] / "CATKIN_IGNORE").touch()
     workspace.missing.update(selection.replaced)
     _report_packages("replaced by a package of this workspace:", selection.replaced, report)
+    for name in selection.completed:
+        complete_package(workspace.packages[name], stand_ins[name])
+    workspace.unbuilt.update(selection.completed)
+    workspace.missing.update(selection.completed)
+    _report_packages("programs of this workspace, files of the project:", selection.completed, report)
     _exclude(workspace, selection.unbuilt, report)
     for name, users in selection.absent.items():
         _create_placeholder(workspace, name)
@@ -145,6 +150,30 @@ def build(workspace: Workspace, log: Path, report: Callable[[str], None]) -> Non
     broken = _broken_sources(workspace, output)
     workspace.missing.update(broken)
     _report_packages("not compiled:", broken, report)
+
+
+def complete_package(folder: Path, stand_in: Path) -> None:
+    """Link the files of a replacing package into the project's package, whose own files stay.
+
+    Programs are those of the replacing package: others of the same name are no longer executable, as rosrun
+    starts a program only if there is one of its name.
+
+    Args:
+        folder: Package of the project.
+        stand_in: Package of this workspace.
+    """
+    files = [file for file in sorted(stand_in.rglob("*")) if file.is_file()]
+    programs = {file.name for file in files if os.access(file, os.X_OK)}
+    for file in folder.rglob("*"):
+        if file.name in programs and file.is_file():
+            file.chmod(file.stat().st_mode & ~0o111)
+    for file in files:
+        target = folder / file.relative_to(stand_in)
+        if file.name in programs:
+            target.unlink(missing_ok=True)
+        if not target.exists():
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.symlink_to(file)
 
 
 def environment(workspace: Workspace) -> Dict[str, str]:

@@ -6,13 +6,19 @@ from pathlib import Path
 from typing import Callable, Dict, List, Mapping, Set
 
 # Packages that projects vendor as source. They need old versions of Boost or pluginlib, and the simulation
-# provides their function.
+# provides their function. Exact names where authors name packages of their own like these.
 VENDORED_PACKAGES = re.compile(
-    r"(openslam_gmapping|gmapping|slam_gmapping|turtlebot_.+|kobuki_.+|yocs_.+|yujin_.+|ecl_.+|create_.+|"
+    r"(openslam_gmapping|gmapping|slam_gmapping|yocs_.+|yujin_.+|ecl_.+|"
     r"amcl|map_server|move_base|move_slow_and_clear|navfn|nav_core|global_planner|base_local_planner|"
     r"dwa_local_planner|costmap_2d|voxel_grid|carrot_planner|clear_costmap_recovery|rotate_recovery|"
     r"fake_localization|robot_pose_ekf|depthimage_to_laserscan|gazebo_ros|gazebo_ros_control|gazebo_plugins|"
-    r"gazebo_dev|gazebo_msgs|explore|explore_lite|map_merge|rtabmap|rtabmap_ros|realsense_.+|freenect_.+|openni.*)"
+    r"gazebo_dev|gazebo_msgs|explore_lite|map_merge|rtabmap|rtabmap_ros|realsense_.+|freenect_.+|openni.*|"
+    r"turtlebot_(actions|bringup|calibration|capabilities|dashboard|description|follower|gazebo|msgs|navigation|"
+    r"interactive_markers|panorama|rapps|rviz_launchers|stage|stdr|teleop)|"
+    r"kobuki_(auto_docking|bumper2pc|capabilities|controller_tutorial|core|dashboard|description|dock_drive|"
+    r"driver|ftdi|gazebo|gazebo_plugins|keyop|led_controller|msgs|node|qtestsuite|random_walker|rapps|"
+    r"rviz_launchers|safety_controller|soft|softapps|softnode|testsuite)|"
+    r"create_(bringup|dashboard|description|driver|gazebo_plugins|msgs|node|robot))"
 )
 _COMPILED = re.compile(
     r"^\s*(?:add_executable|add_library|cuda_add_\w+|generate_messages)\s*\(", re.MULTILINE | re.IGNORECASE
@@ -28,11 +34,13 @@ class PackageSelection:
 
     Attributes:
         replaced: Package that is replaced by one of this workspace -> reason.
+        completed: Package whose files are used and whose programs are those of this workspace -> reason.
         unbuilt: Package of which only files, as launch files and worlds, are used -> reason.
         absent: Dependency that is not installed -> packages that declare it.
     """
 
     replaced: Dict[str, str]
+    completed: Dict[str, str]
     unbuilt: Dict[str, str]
     absent: Dict[str, List[str]]
 
@@ -48,6 +56,7 @@ def select_packages(
         is_installed: Whether catkin finds a package outside of the project.
     """
     replaced: Dict[str, str] = {}
+    completed: Dict[str, str] = {}
     unbuilt: Dict[str, str] = {}
     absent: Dict[str, List[str]] = {}
     for name, folder in sorted(folders.items()):
@@ -59,14 +68,14 @@ def select_packages(
         if name in stand_ins and lost_parts:
             replaced[name] = f"its robots need {', '.join(lost_parts)}, which is not installed"
         elif name in stand_ins and is_compiled and _has_nodes_or_messages(stand_ins[name]):
-            replaced[name] = "its sources do not build with current libraries"
+            completed[name] = "its sources do not build with current libraries"
         elif is_compiled and VENDORED_PACKAGES.fullmatch(name):
             unbuilt[name] = "its sources do not build with current libraries; not needed in simulation"
         else:
             for other in sorted(_components(cmake) - set(folders)):
                 if not is_installed(other):
                     absent.setdefault(other, []).append(name)
-    return PackageSelection(replaced, unbuilt, absent)
+    return PackageSelection(replaced, completed, unbuilt, absent)
 
 
 def _has_nodes_or_messages(stand_in: Path) -> bool:

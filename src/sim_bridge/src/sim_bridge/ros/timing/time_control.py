@@ -98,10 +98,11 @@ class TimeControl:
         return self._wait(min(delay, LONGEST_WAIT_SECONDS))
 
     def _have_nodes_rested(self) -> bool:
-        """Whether the nodes that do not support lock-step have caught up; not asked in real time."""
-        if 0.0 < self.speed <= REAL_TIME:
+        """Whether nodes have caught up that neither support lock-step nor report; not asked in real time."""
+        unable = self._lock_step.unable
+        if not unable or 0.0 < self.speed <= REAL_TIME:
             return True
-        self._paced.set_nodes(self._lock_step.unable)
+        self._paced.set_nodes(unable - {f"/{name}" for name in self._pacer.reporting})
         return self._paced.may_step(self._scene.stamp, self._lock_step.is_answered)
 
     def _wait(self, seconds: float) -> bool:
