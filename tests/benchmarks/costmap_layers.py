@@ -5,7 +5,7 @@ Both nodes get the same messages at the same time: a scan of 360 beams at 10 Hz 
 points of depth cameras at 5 Hz. The local costmap is 4 x 4 m with cells of 0.05 m, at 5 Hz. There is no
 goal. The official move_base is measured if it is installed.
 
-python3 tests/benchmarks/costmap_layers.py [--seconds N] [--layers N] [--silent] [--json FILE]
+python3 tests/benchmarks/costmap_layers.py [--seconds N] [--layers N] [--voxels] [--silent] [--json FILE]
 """
 
 import argparse
@@ -40,6 +40,7 @@ POINTS, BEAMS = 20_000, 360
 SCAN_PERIOD, CLOUD_PERIOD, TRANSFORM_PERIOD = 0.1, 0.2, 0.05
 WARM_UP_SECONDS, START_SECONDS = 8.0, 60.0
 OUR_NODE = [sys.executable, "-c", "from move_base_lite.ros.node import main; main()"]
+OBSTACLES, VOXELS = "costmap_2d::ObstacleLayer", "costmap_2d::VoxelLayer"
 SOURCES = {
     "scan": {"data_type": "LaserScan", "clearing": True, "inf_is_valid": True},
     "cloud_1": {"data_type": "PointCloud2", "clearing": True},
@@ -47,12 +48,12 @@ SOURCES = {
 }
 
 
-def parameters(layers: int) -> Dict[str, Any]:
-    """Parameters of move_base with so many obstacle layers in the local costmap."""
+def parameters(layers: int, kind: str = OBSTACLES) -> Dict[str, Any]:
+    """Parameters of move_base with so many obstacle layers of a type in the local costmap."""
     frames = {"robot_base_frame": "base_link", "transform_tolerance": 1.0}
     chosen = [*SOURCES][:layers]
     inflation = {"name": "inflation", "type": "costmap_2d::InflationLayer"}
-    obstacles = [{"name": f"{topic}_layer", "type": "costmap_2d::ObstacleLayer"} for topic in chosen]
+    obstacles = [{"name": f"{topic}_layer", "type": kind} for topic in chosen]
     tables = {
         f"{topic}_layer": {"observation_sources": topic, topic: {**SOURCES[topic], "topic": f"/{topic}"}}
         for topic in chosen
@@ -154,6 +155,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--seconds", type=float, default=30.0, help="of the measurement (default: 30)")
     parser.add_argument("--layers", type=int, default=3, choices=(1, 2, 3), help="number (default: 3)")
+    parser.add_argument("--voxels", action="store_true", help="voxel layers instead of obstacle layers")
     parser.add_argument("--silent", action="store_true", help="publish no clouds")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the figures there too")
     options = parser.parse_args()
@@ -180,7 +182,7 @@ def _measure(stack: ExitStack, commands: Dict[str, List[str]], options: Any) -> 
     stack.callback(shutil.rmtree, folder, ignore_errors=True)
     _start_master(stack, folder)
     for name in commands:
-        rospy.set_param(f"/{name}", parameters(options.layers))
+        rospy.set_param(f"/{name}", parameters(options.layers, VOXELS if options.voxels else OBSTACLES))
     sensors = Sensors(options.silent)
     processes = {}
     for name, command in commands.items():

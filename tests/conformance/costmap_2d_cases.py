@@ -606,23 +606,162 @@ OBSTACLE_LAYER: List[Case] = [
         official=MISS,
         reason="a return is no free space; the official layer erases what the sensor sees",
     ),
-    statement(
-        "a_voxel_layer_marks_points_within_its_heights",
-        "plugins/voxel_layer.cpp: updateBounds",
-        costmap(("voxels", VOXELS, sources())),
-        AHEAD,
-        HIT,
-        steps=[[("cloud", AT_AHEAD)]],
+]
+
+VOXEL_CPP, GRID_H = "plugins/voxel_layer.cpp", "voxel_grid/voxel_grid.h"
+LOW, HIGH, BEYOND = [1.0, 0.0, 0.1], [1.0, 0.0, 1.0], [2.9, 0.0, 0.1]
+AT_LOW = {"cell": (2.25, 1.25)}
+TRACKED = {"track_unknown_space": True}
+SHORT = {**CLOUD, "clearing": True, "marking": False, "raytrace_range": 0.5}
+
+
+def voxels(
+    name: str, source: str, expected: int, *clouds: Any, cell: Any = AT_LOW, around: Any = (), **values: Any
+) -> Case:
+    """The occupancy of a cell after clouds, one an update; ``around``: further parameters of the costmap."""
+    layer = ("voxels", VOXELS, {**sources(clearing=True), **values})
+    steps = [[("cloud", cloud)] for cloud in clouds]
+    return statement(name, source, costmap(layer, **dict(around)), cell, {"cell": expected}, steps=steps)
+
+
+VOXEL_LAYER: List[Case] = [
+    voxels("a_voxel_layer_marks_points_within_its_heights", f"{VOXEL_CPP}: updateBounds", 100, [LOW]),
+    voxels(
+        "mark_threshold_is_the_most_marked_voxels_of_a_free_column",
+        f"{GRID_H}: markVoxelInMap",
+        0,
+        [LOW],
+        mark_threshold=1,
+    ),
+    voxels(
+        "more_marked_voxels_than_mark_threshold_are_lethal",
+        f"{GRID_H}: markVoxelInMap",
+        100,
+        [LOW, HIGH],
+        mark_threshold=1,
+    ),
+    voxels(
+        "two_points_in_one_voxel_count_once",
+        f"{GRID_H}: markVoxelInMap",
+        0,
+        [LOW, [1.0, 0.0, 0.15]],
+        mark_threshold=1,
+    ),
+    voxels(
+        "points_above_the_highest_voxel_are_not_marked", f"{VOXEL_CPP}: worldToMap3D", 0, [HIGH], z_voxels=4
+    ),
+    voxels(
+        "z_resolution_is_the_height_of_a_voxel",
+        f"{VOXEL_CPP}: worldToMap3D",
+        100,
+        [HIGH],
+        z_voxels=4,
+        z_resolution=0.3,
+    ),
+    voxels(
+        "sixteen_voxels_are_the_most_of_a_column",
+        f"{GRID_H}: sizes <= 16",
+        100,
+        [[1.0, 0.0, 1.55]],
+        z_voxels=16,
+        z_resolution=0.1,
+    ),
+    voxels(
+        "a_point_below_origin_z_is_marked_in_the_lowest_voxel",
+        f"{VOXEL_CPP}: updateBounds",
+        100,
+        [LOW],
+        origin_z=0.5,
+    ),
+    voxels("a_ray_clears_the_voxels_it_passes", f"{GRID_H}: clearVoxelLineInMap", 0, [LOW], [BEYOND]),
+    voxels(
+        "a_ray_below_an_obstacle_does_not_clear_it", f"{GRID_H}: clearVoxelLineInMap", 100, [HIGH], [BEYOND]
+    ),
+    voxels(
+        "a_cell_stays_lethal_while_another_voxel_is_marked",
+        f"{GRID_H}: ClearVoxelInMap",
+        100,
+        [LOW, HIGH],
+        [BEYOND],
+    ),
+    voxels(
+        "a_cell_is_free_when_no_more_voxels_than_mark_threshold_are_left",
+        f"{GRID_H}: ClearVoxelInMap",
+        0,
+        [LOW, HIGH],
+        [BEYOND],
+        mark_threshold=1,
+    ),
+    voxels(
+        "a_ray_ends_two_cells_before_its_return",
+        f"{VOXEL_CPP}: raytraceFreespace: 2 * resolution_",
+        100,
+        [LOW],
+        [[1.7, 0.0, 0.1]],
     ),
     statement(
-        "mark_threshold_has_no_effect_as_obstacles_are_flat",
-        "plugins/voxel_layer.cpp: mark_threshold",
-        costmap(("voxels", VOXELS, {**sources(), "mark_threshold": 1})),
-        AHEAD,
-        HIT,
-        steps=[[("cloud", AT_AHEAD)]],
-        official=MISS,
-        reason="the layer has no voxels; the parameter is named at start",
+        "a_ray_is_cut_at_raytrace_range",
+        f"{VOXEL_CPP}: raytrace_range",
+        costmap(("voxels", VOXELS, {"observation_sources": "mark clear", "mark": CLOUD, "clear": SHORT})),
+        AT_LOW,
+        {"cell": 100},
+        steps=[[("mark", [LOW])], [("clear", [BEYOND])]],
+    ),
+    voxels(
+        "a_sensor_below_the_lowest_voxel_does_not_clear",
+        f"{VOXEL_CPP}: raytraceFreespace: out of map bounds",
+        100,
+        [LOW],
+        [BEYOND],
+        origin_z=0.05,
+    ),
+    voxels(
+        "a_point_above_the_layer_is_not_marked_but_clears_up_to_its_height",
+        f"{VOXEL_CPP}: raytraceFreespace: max_obstacle_height_",
+        0,
+        [LOW],
+        [[2.9, 0.0, 0.3]],
+        max_obstacle_height=0.25,
+    ),
+    voxels(
+        "a_ray_that_rises_above_the_layer_clears_no_further",
+        f"{VOXEL_CPP}: raytraceFreespace: max_obstacle_height_",
+        100,
+        [LOW],
+        [[2.0, 0.0, 1.9]],
+        max_obstacle_height=0.15,
+    ),
+    voxels(
+        "a_cleared_column_is_unknown_above_unknown_threshold",
+        f"{GRID_H}: ClearVoxelInMap",
+        -1,
+        [BEYOND],
+        unknown_threshold=8,
+        around=TRACKED,
+    ),
+    voxels(
+        "a_cleared_column_is_free_up_to_unknown_threshold",
+        f"{GRID_H}: ClearVoxelInMap",
+        0,
+        [BEYOND],
+        unknown_threshold=9,
+        around=TRACKED,
+    ),
+    voxels(
+        "a_column_that_no_ray_passes_stays_unknown",
+        f"{GRID_H}: resize",
+        -1,
+        [BEYOND],
+        cell={"cell": (2.25, 3.25)},
+        around=TRACKED,
+    ),
+    statement(
+        "points_above_the_height_of_an_obstacle_layer_clear",
+        f"{OBSTACLE_CPP}: raytraceFreespace",
+        costmap(obstacles(max_obstacle_height=0.5, **sources(clearing=True))),
+        AT_LOW,
+        {"cell": 0},
+        steps=[[("cloud", [LOW])], [("cloud", [[2.4, 0.0, 0.9]])]],
     ),
 ]
 
@@ -890,7 +1029,7 @@ PRE_HYDRO: List[Case] = [
 ]
 
 CASES: List[Case] = [
-    *STATIC_LAYER, *OBSTACLE_LAYER, *ORDER, *INFLATION_LAYER, *FOOTPRINTS, *PRE_HYDRO,
+    *STATIC_LAYER, *OBSTACLE_LAYER, *VOXEL_LAYER, *ORDER, *INFLATION_LAYER, *FOOTPRINTS, *PRE_HYDRO,
 ]  # fmt: skip
 
 

@@ -41,7 +41,7 @@ class Observer:
         self.mounting = Pose2()
         for topic, kind, kept in (
             ("amcl_pose", PoseWithCovarianceStamped, self.poses),
-            ("particlecloud", PoseArray, self.clouds),
+            ("particlecloud", rospy.AnyMsg, self.clouds),  # decoded late, as that takes long
             ("/diagnostics", DiagnosticArray, self.diagnostics),
         ):
             rospy.Subscriber(topic, kind, kept.append)
@@ -80,8 +80,9 @@ class Observer:
             answer["covariance"] = [i for i, value in enumerate(pose.pose.covariance) if value != 0.0]
             answer["deviations"] = [round(math.sqrt(pose.pose.covariance[i]), 2) for i in (0, 7, 35)]
         if len(self.clouds) > before[1]:
-            poses = np.array([[p.position.x, p.position.y] for p in self.clouds[-1].poses])
-            answer["cloud"], answer["cloud_frame"] = len(poses), self.clouds[-1].header.frame_id
+            cloud = PoseArray().deserialize(self.clouds[-1]._buff)
+            poses = np.array([[p.position.x, p.position.y] for p in cloud.poses])
+            answer["cloud"], answer["cloud_frame"] = len(poses), cloud.header.frame_id
             answer["right_half"] = round(float(np.mean(poses[:, 0] > 4.0)), 2)
             answer["spread"] = round(float(poses.std(axis=0).max()), 1)
         if len(self.transforms) > before[2]:

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from move_base_lite.costmap.layers.obstacles import FLAT
+from move_base_lite.costmap.layers.voxels import NOT_PUBLISHED
 from move_base_lite.parameters import read_parameters
 
 CONFIG = Path(__file__).resolve().parents[1] / "config"
@@ -30,8 +30,8 @@ def named(parameters):
             "NavfnROS/planner_window_x has no effect: the official planner does not use it either",
         ),
         (
-            {"local_costmap": {"map_type": "voxel", "z_voxels": 16}},
-            f"local_costmap/obstacle_layer/z_voxels has no effect: {FLAT}",
+            {"local_costmap": {"map_type": "voxel", "publish_voxel_map": True}},
+            f"local_costmap/obstacle_layer/publish_voxel_map has no effect: {NOT_PUBLISHED}",
         ),
         (
             {"local_costmap": {"plugins": LAYERS, "static_map": True}},

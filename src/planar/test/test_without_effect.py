@@ -3,7 +3,7 @@
 import pytest
 
 from planar import SettingsError
-from planar.config.without_effect import SettingsWithoutEffect
+from planar.config.without_effect import SettingsWithoutEffect, refuse, summary
 
 
 def test_each_setting_is_named_once_with_its_reason():
@@ -15,13 +15,12 @@ def test_each_setting_is_named_once_with_its_reason():
         "/move_base/NavfnROS/planner_window_x has no effect: navfn does not use it either",
         "home.world:12: <audio> has no effect",
     ]
-    assert found.summary("the lines above") == "2 settings without effect, see the lines above"
+    assert summary(len(found), "~strict") == (
+        "2 settings without effect, see the lines above; ~strict makes this an error"
+    )
 
 
 def test_a_strict_program_refuses_them_all_in_one_error():
-    found = SettingsWithoutEffect()
-    found.refuse()
-    found.add("a")
-    found.add("b")
+    refuse([])
     with pytest.raises(SettingsError, match="a has no effect\nb has no effect"):
-        found.refuse()
+        refuse(["a has no effect", "b has no effect"])

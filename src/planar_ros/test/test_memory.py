@@ -1,6 +1,8 @@
 """Pages of the compiler are dropped only where they are unchanged copies of its file."""
 
 import multiprocessing
+import subprocess
+import sys
 
 import numba
 
@@ -54,3 +56,20 @@ def test_kernels_run_and_are_compiled_after_the_compiler_is_released():
     assert release_compiler() > 0
     assert twice(2) == 4
     assert twice(1.5) == 3.0
+
+
+WITHOUT_BLAS = """
+import sys
+import numba, numpy as np
+from planar_ros.node.memory import load_numba_without_blas
+load_numba_without_blas()
+assert numba.njit(lambda values: values.sum())(np.ones(3)) == 3.0
+assert "scipy.linalg" not in sys.modules
+inverse = numba.njit(lambda matrix: np.linalg.inv(matrix) @ matrix)
+assert inverse(np.eye(2)).tolist() == np.eye(2).tolist()
+import scipy.linalg
+"""
+
+
+def test_kernels_load_linear_algebra_only_if_they_use_it():
+    subprocess.run([sys.executable, "-c", WITHOUT_BLAS], check=True, timeout=120.0)

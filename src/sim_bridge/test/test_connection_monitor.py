@@ -18,6 +18,9 @@ MISSING = "the observer /referee"
 class AllConnected:
     """Every node is there and connected."""
 
+    def local_process(self, name):
+        return None
+
     def known_nodes(self):
         return {"/amcl"}, {"/amcl"}
 
@@ -59,14 +62,14 @@ def test_expected_observers_are_waited_for(parameters):
     parameters["/simulation/observers"] = ["/referee"]
     assert is_complete_within(monitor, DEADLINE)
     assert monitor.observers == {"/referee"}
-    assert monitor.given_up() == []
+    assert monitor.shortcomings() == []
 
 
 def test_an_observer_that_does_not_start_is_given_up(parameters, monkeypatch):
     monkeypatch.setattr(connection_monitor, "START_SECONDS", LATE_SECONDS)
     monitor = joined()
     assert is_complete_within(monitor, DEADLINE)
-    assert monitor.given_up() == [MISSING]
+    assert monitor.shortcomings() == [f"time went on without {MISSING}"]
 
 
 def test_without_expected_observers_none_is_waited_for(parameters):
@@ -81,3 +84,37 @@ def test_the_old_name_of_the_parameter_still_works(parameters):
     assert MISSING in monitor.missing()
     parameters["/simulation/observers"] = ["/referee"]
     assert is_complete_within(monitor, DEADLINE)
+
+
+class OtherProgram(AllConnected):
+    """amcl has started and does not support lock-step; it runs in a process."""
+
+    pid = None
+
+    def known_nodes(self):
+        return {"/amcl"}, set()
+
+    def local_process(self, name):
+        return self.pid
+
+
+def test_a_native_program_is_not_waited_for(parameters, monkeypatch):
+    monkeypatch.setattr(connection_monitor, "ConnectionCheck", OtherProgram)
+    monkeypatch.setattr(connection_monitor, "is_native", lambda pid: pid == 7)
+    monkeypatch.setattr(OtherProgram, "pid", 7)
+    parameters.clear()
+    monitor = ConnectionMonitor("/sim_bridge", ["/amcl"], [])
+    assert is_complete_within(monitor, DEADLINE / 2)
+    assert (monitor.unable, monitor.shortcomings()) == ({"/amcl"}, ["/amcl does not support lock-step"])
+    assert monitor.shortcomings() == [], "each is reported once"
+
+
+def test_a_node_that_does_not_ask_for_lock_step_is_waited_for_for_some_time(parameters, monkeypatch):
+    monkeypatch.setattr(connection_monitor, "ConnectionCheck", OtherProgram)
+    monkeypatch.setattr(connection_monitor, "JOIN_SECONDS", LATE_SECONDS)
+    parameters.clear()
+    monitor = ConnectionMonitor("/sim_bridge", ["/amcl"], [])
+    assert not is_complete_within(monitor, LATE_SECONDS / 2)
+    assert is_complete_within(monitor, DEADLINE)
+    monitor.add_node("/amcl")
+    assert monitor.unable == frozenset()

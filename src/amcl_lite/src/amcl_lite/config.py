@@ -326,10 +326,6 @@ def settings_warnings(settings: LocalizerSettings) -> List[str]:
     lines = []
     if settings.beams < 2:
         lines.append("laser_max_beams is below 2: scans are not used, the robot follows its odometry")
-    if settings.beam_skip and settings.sensor_model != "likelihood_field_prob":
-        lines.append("do_beamskip has no effect unless laser_model_type is likelihood_field_prob")
-    if (settings.recovery_alpha_slow == 0.0) != (settings.recovery_alpha_fast == 0.0):
-        lines.append("recovery_alpha_slow and recovery_alpha_fast must both be above 0 to have an effect")
     if settings.recovery_alpha_slow > settings.recovery_alpha_fast:
         lines.append("recovery_alpha_slow above recovery_alpha_fast adds random poses when scans fit well")
     return lines

@@ -3,6 +3,7 @@ from pathlib import Path
 
 from run_project.checkout.layout import read_checkout
 from run_project.checkout.placement import Placement
+from run_project.checkout.substitutes import complete_package
 from run_project.preparation import building
 from run_project.preparation.building import (
     Workspace,
@@ -96,3 +97,29 @@ def test_model_folders_are_appended_to_the_gazebo_model_path_of_the_project(tmp_
     models = (tmp_path / "src/models", tmp_path / "src/world")
     workspace = Workspace(tmp_path, tmp_path / "src", {}, tmp_path / "placeholders", models)
     assert environment(workspace)["GAZEBO_MODEL_PATH"] == f"/theirs:{models[0]}:{models[1]}"
+
+
+def test_a_vendored_package_keeps_its_files_and_gets_those_and_the_programs_of_the_replacing_one(tmp_path):
+    files = {
+        "theirs/launch/maze.launch": "<launch/>",
+        "theirs/launch/world.launch": "<!-- theirs -->",
+        "theirs/scripts/drive": "#!/usr/bin/env python2",
+        "ours/launch/world.launch": "<!-- ours -->",
+        "ours/launch/house.launch": "<launch/>",
+        "ours/nodes/drive": "#!/usr/bin/env python3",
+    }
+    for name, text in files.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text)
+        if text.startswith("#!"):
+            (tmp_path / name).chmod(0o755)
+    theirs = tmp_path / "theirs"
+    complete_package(theirs, tmp_path / "ours", replaces_robots=False)
+    assert sorted(file.name for file in (theirs / "launch").iterdir()) == [
+        "house.launch",
+        "maze.launch",
+        "world.launch",
+    ]
+    assert (theirs / "launch/world.launch").read_text() == "<!-- theirs -->"
+    programs = [file for file in theirs.rglob("drive") if os.access(file, os.X_OK)]
+    assert [file.read_text() for file in programs] == ["#!/usr/bin/env python3"]

@@ -1,6 +1,9 @@
 """What rospy knows about the topics and connections of this node; rospy publishes only their number."""
 
+import fcntl
 import socket
+import termios
+from array import array
 from typing import Any, FrozenSet, Iterator, List, Set, Tuple
 
 import rospy
@@ -57,6 +60,19 @@ def is_connected(publisher: rospy.Publisher, node: str) -> bool:
     return bool(publisher.impl.has_connection(node))
 
 
+def has_unread() -> bool:
+    """Return whether a subscription of this node has received bytes that rospy has not read yet.
+
+    Needed to process what other nodes have sent before simulated time passes.
+    """
+    for subscription in list(get_topic_manager().subs.values()):
+        for connection in list(subscription.connections):
+            end = getattr(connection, "socket", None)
+            if end is not None and _unread_bytes(end):
+                return True
+    return False
+
+
 def full_queues(publisher: rospy.Publisher) -> int:
     """Return for how many subscribers the next message drops an older one; rospy counts no drops."""
     return sum(_is_full(connection) for connection in publisher.impl.connections)
@@ -108,6 +124,16 @@ def connect(publisher: rospy.Publisher, node: str, end: socket.socket) -> Any:
     transport.set_socket(end, node)
     publisher.impl.add_connection(transport)
     return next(each for each in publisher.impl.connections if each.endpoint_id == node)
+
+
+def _unread_bytes(end: socket.socket) -> int:
+    """Number of received bytes that have not been read; 0 if the socket is closed."""
+    size = array("i", [0])
+    try:
+        fcntl.ioctl(end.fileno(), termios.FIONREAD, size)
+    except (OSError, ValueError):
+        return 0
+    return size[0]
 
 
 def _is_full(connection: Any) -> bool:

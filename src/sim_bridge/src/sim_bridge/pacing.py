@@ -70,6 +70,11 @@ class Pacer:
                 self._missing.discard(name)
                 self._given_up.discard(name)
 
+    @property
+    def reporting(self) -> FrozenSet[str]:
+        """Nodes that have reported since simulated time began."""
+        return frozenset(self._reported)
+
     def is_missing(self, name: str) -> bool:
         """Return whether a node has not reported yet, or has been given up."""
         return name in self._missing - self.synchronised_nodes

@@ -5,6 +5,7 @@ from typing import Any, Mapping, Sequence
 import rospy
 
 from amcl_lite.config import MOTION_MODELS, SENSOR_MODELS, InitialPose, NodeSettings, settings_warnings
+from amcl_lite.ineffective import parameters_without_effect
 from planar.config.parameters import official_names
 from planar.config.settings import settings_from
 from planar_ros.node.parameters import RESTORE, read_settings
@@ -15,7 +16,10 @@ def read_node_settings() -> NodeSettings:
     _replace_unknown("odom_model_type", MOTION_MODELS, "odom model type", "diff model")
     _replace_unknown("laser_model_type", SENSOR_MODELS, "laser model type", "likelihood_field model")
     settings = read_settings(
-        NodeSettings, official_names(NodeSettings), ignore=(*official_names(InitialPose), RESTORE)
+        NodeSettings,
+        official_names(NodeSettings),
+        ignore=(*official_names(InitialPose), RESTORE),
+        without_effect=parameters_without_effect,
     )
     for line in settings_warnings(settings):
         rospy.logwarn(line)

@@ -10,8 +10,9 @@ from nav_msgs.msg import Odometry
 
 from auto_docking_lite.config import NodeSettings
 from auto_docking_lite.contract import DockInputs
-from planar import Pose2, Scan
-from planar_ros.messages.conversion import LaserScanArrays, frame_name, pose2_from_msg, scan_from_msg
+from planar import Pose2
+from planar_ros.messages.conversion import LaserScanArrays, pose2_from_msg
+from planar_ros.messages.newest_scan import NewestScan
 from planar_ros.messages.transforms import Transforms
 from planar_ros.messages.validation import MessageError, subscribe
 
@@ -37,7 +38,7 @@ class DockTopics:
         self._odometry: Deque[Tuple[float, Pose2]] = deque(maxlen=ODOMETRY_MESSAGES)
         self._signals: List[Tuple[float, Tuple[int, int, int]]] = []
         self._core: Optional[SensorState] = None
-        self._scan: Optional[Scan] = None
+        self._scans = NewestScan(transforms, settings.robot_base_frame)
         self._seen: Dict[str, float] = {}
         self._subscribers = [
             subscribe("~odom", Odometry, self._on_odometry, queue_size=10),
@@ -61,7 +62,8 @@ class DockTopics:
             self._odometry.clear()
             self._signals.clear()
             self._seen.clear()
-            self._core = self._scan = None
+            self._core = None
+        self._scans.clear()
 
     def collect(self, now: float) -> Optional[DockInputs]:
         """Return the inputs of a control tick, with the signals since the last call; None without odometry.
@@ -81,7 +83,8 @@ class DockTopics:
             if abs(at - stamp) <= MAX_SKEW:
                 matched.append((pose, signal))
         odom_in_map = self._transforms.lookup(settings.global_frame, settings.odom_frame)
-        scan, base = self._scan, odometry[-1][1]
+        placed, base = self._scans.take(), odometry[-1][1]
+        scan = placed[0] if placed else None
         return DockInputs(now, base, tuple(matched), core.bumper, core.charger, scan, odom_in_map)
 
     def _record(self, name: str) -> None:
@@ -105,7 +108,4 @@ class DockTopics:
         self._record("~dock_ir")
 
     def _on_scan(self, message: Any) -> None:
-        frame = frame_name(message.header.frame_id)
-        mounting = self._transforms.mounting(self._settings.robot_base_frame, frame)
-        if mounting is not None:
-            self._scan = scan_from_msg(message, *mounting)
+        self._scans.add(message, rospy.get_time())

@@ -20,6 +20,9 @@ from planar_ros.messages.conversion import GetMapArrays, OccupancyGridArrays, gr
 from planar_ros.node.parameters import read_settings
 from planar_ros.node.runner import run
 
+# Parameters that apply to an image without description only, and why not else.
+OF_AN_IMAGE = "negate", "occupied_thresh", "free_thresh"
+IN_THE_MAP = "the YAML file of the map has it"
 RESULTS = {
     MapMissingError: LoadMapResult.MAP_DOES_NOT_EXIST,
     MapImageError: LoadMapResult.INVALID_MAP_DATA,
@@ -39,7 +42,11 @@ class MapServerNode:
         Raises:
             MapFileError: The map cannot be loaded.
         """
-        self._settings = read_settings(ServerSettings)
+        has_description = arguments.resolution is None
+        self._settings = read_settings(
+            ServerSettings,
+            without_effect=lambda settings: dict.fromkeys(OF_AN_IMAGE, IN_THE_MAP) if has_description else {},
+        )
         grid = self._load(arguments)
         self._map_publisher = rospy.Publisher("map", OccupancyGridArrays, queue_size=1, latch=True)
         self._metadata_publisher = rospy.Publisher("map_metadata", MapMetaData, queue_size=1, latch=True)

@@ -8,8 +8,9 @@ import yaml
 
 from move_base_lite.costmap import LAYERS, CostmapSettings, Layer
 from move_base_lite.costmap.layers.inflation import INFLATION
-from move_base_lite.costmap.layers.obstacles import OBSTACLES, VOXEL, ObstacleSettings, SourceSettings
+from move_base_lite.costmap.layers.obstacles import OBSTACLES, ObstacleSettings, SourceSettings
 from move_base_lite.costmap.layers.static import STATIC
+from move_base_lite.costmap.layers.voxels import VOXEL
 from move_base_lite.costmap.settings import NamedLayer
 from move_base_lite.parameters.reader import ParameterReader, Tree, subtree
 from planar import SettingsError

@@ -1,7 +1,6 @@
 """Node collision_monitor: limits velocity commands between their source and the drive."""
 
 import threading
-from typing import Optional
 
 import numpy as np
 import rospy
@@ -12,7 +11,8 @@ from move_base_lite.collision_monitor import STOPPED, CollisionMonitor, LimitedC
 from move_base_lite.parameters.costmaps import parse_footprint
 from planar import Twist2
 from planar.config.settings import settings_from
-from planar_ros.messages.conversion import LaserScanArrays, frame_name, scan_from_msg
+from planar_ros.messages.conversion import LaserScanArrays, frame_name
+from planar_ros.messages.newest_scan import NewestScan
 from planar_ros.messages.transforms import Transforms
 from planar_ros.messages.validation import subscribe
 from planar_ros.node.parameters import parameters_below
@@ -32,10 +32,8 @@ class CollisionMonitorNode:
         self._settings = _settings_from(parameters)
         self._monitor = CollisionMonitor(self._settings)
         self._monitor.limit_command(Twist2(0.1), np.zeros((1, 2)))  # compiles the kernel
-        self._transforms = Transforms()
+        self._scans = NewestScan(Transforms(), self._base_frame)
         self._lock = threading.Lock()
-        self._points_xy: Optional[np.ndarray] = None
-        self._scan_stamp = rospy.Time(0)
         self._command, self._passed, self._command_stamp = Twist2(), Twist2(), rospy.Time(0)
         self._reason = ""
         self._state = rospy.Publisher("~state", String, queue_size=1, latch=True)
@@ -45,17 +43,13 @@ class CollisionMonitorNode:
         subscribe("cmd_vel_in", Twist, self._on_command, queue_size=1, tcp_nodelay=True)
 
     def _on_scan(self, message):
-        mounting = self._transforms.mounting(self._base_frame, frame_name(message.header.frame_id))
-        if mounting is None:
-            frames = f"{self._base_frame} -> {message.header.frame_id}"
-            rospy.logwarn_throttle(WARN_SECONDS, f"waiting for the transform {frames}")
-            return
+        now = rospy.Time.now()
+        self._scans.add(message, now.to_sec())
         with self._lock:
-            self._points_xy = scan_from_msg(message, *mounting).hit_points_in_base()
-            self._scan_stamp = rospy.Time.now()
-            is_fresh = (self._scan_stamp - self._command_stamp).to_sec() < self._settings.scan_timeout
-            if is_fresh and self._limited().command != self._passed:
-                self._publish(self._limited())
+            is_fresh = (now - self._command_stamp).to_sec() < self._settings.scan_timeout
+            limited = self._limited()
+            if is_fresh and limited.command != self._passed:
+                self._publish(limited)
 
     def _on_command(self, message):
         with self._lock:
@@ -64,14 +58,12 @@ class CollisionMonitorNode:
             self._publish(self._limited())
 
     def _limited(self) -> LimitedCommand:
-        if (
-            self._points_xy is None
-            or (rospy.Time.now() - self._scan_stamp).to_sec() > self._settings.scan_timeout
-        ):
+        placed = self._scans.take()
+        if placed is None or not 0.0 <= rospy.get_time() - placed[1] <= self._settings.scan_timeout:
             return LimitedCommand(Twist2(), SILENT)
         if not self._command.is_finite():
             return LimitedCommand(Twist2(), STOPPED)
-        return self._monitor.limit_command(self._command, self._points_xy)
+        return self._monitor.limit_command(self._command, placed[0].hit_points_in_base())
 
     def _publish(self, limited: LimitedCommand):
         self._passed = limited.command
@@ -79,8 +71,9 @@ class CollisionMonitorNode:
         message.linear.x, message.angular.z = limited.command.v, limited.command.omega
         self._out.publish(message)
         if limited.reason == SILENT:
-            silent = f"no scans on {rospy.resolve_name('scan')}: the robot is stopped"
-            rospy.logwarn_throttle(WARN_SECONDS, silent)
+            missing = self._scans.missing()
+            lacking = f"transform {missing}" if missing else f"scans on {rospy.resolve_name('scan')}"
+            rospy.logwarn_throttle(WARN_SECONDS, f"no {lacking}: the robot is stopped")
         if limited.reason != self._reason:
             self._reason = limited.reason
             self._state.publish(limited.reason)

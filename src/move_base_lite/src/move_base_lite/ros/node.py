@@ -32,7 +32,7 @@ from planar import Pose2, Twist2
 from planar_ros.lockstep import LockstepClient
 from planar_ros.messages.conversion import frame_name
 from planar_ros.messages.transforms import Transforms
-from planar_ros.node.memory import release_compiler
+from planar_ros.node.memory import load_numba_without_blas, release_compiler
 from planar_ros.node.parameters import is_strict, parameters_below, report_without_effect
 from planar_ros.node.readiness import ReadinessMonitor
 from planar_ros.node.runner import run
@@ -53,6 +53,7 @@ class MoveBaseNode:
         self._settings = _checked_settings(parameters)
         zones_file = parameters.get("zones_file", "")
         self._zones = load_zones(zones_file) if zones_file else Zones()
+        load_numba_without_blas()
         warm_up(self._settings)
         release_compiler()
         costmaps = self._settings.global_costmap, self._settings.local_costmap
@@ -209,7 +210,7 @@ def _checked_settings(parameters) -> NavigatorSettings:
     for warning in found.warnings:
         if warning not in found.unknown:
             rospy.logwarn(warning)
-    report_without_effect(found.without_effect, found.unknown)
+    report_without_effect([*found.without_effect], found.unknown, is_strict())
     return found.settings
 
 

@@ -1,10 +1,35 @@
 """Settings that are accepted and have no effect: parameters, tags and fields of other people's files."""
 
 from dataclasses import dataclass
-from typing import Any, Dict, Iterator, Tuple
+from typing import Any, Dict, Iterator, Sequence, Tuple, Type
 
 from planar.config.parameters import DynamicParameter
-from planar.errors import SettingsError
+from planar.errors import PlanarError, SettingsError
+
+
+def summary(count: int, strict: str) -> str:
+    """Return the line that follows the names of settings without effect in a log.
+
+    Args:
+        count: Number of settings.
+        strict: Parameter or option that makes an error of them.
+    """
+    settings = f"{count} setting{'s' * (count != 1)}"
+    return f"{settings} without effect, see the lines above; {strict} makes this an error"
+
+
+def refuse(texts: Sequence[str], error: Type[PlanarError] = SettingsError) -> None:
+    """Refuse settings without effect, as a strict program does.
+
+    Args:
+        texts: One sentence for each setting.
+        error: Class of the error.
+
+    Raises:
+        PlanarError: Of the class ``error``, if there are any; the text lists all of them.
+    """
+    if texts:
+        raise error("\n".join([*texts, "remove what has no effect, or do without strict"]))
 
 
 class SettingsWithoutEffect:
@@ -35,25 +60,6 @@ class SettingsWithoutEffect:
 
     def __len__(self) -> int:
         return len(self._texts)
-
-    def summary(self, see: str, unknown: int = 0) -> str:
-        """Return the line for the start of a program.
-
-        Args:
-            see: Where the settings are listed, e.g. ``the lines above``.
-            unknown: Number of settings that are not known at all, which count, too.
-        """
-        count = len(self) + unknown
-        return f"{count} setting{'s' * (count != 1)} without effect, see {see}"
-
-    def refuse(self) -> None:
-        """Refuse the settings, as a strict program does.
-
-        Raises:
-            SettingsError: There are settings without effect; the text lists all of them.
-        """
-        if self._texts:
-            raise SettingsError("\n".join([*self, "remove them, or do without strict"]))
 
 
 @dataclass(frozen=True)

@@ -1,12 +1,32 @@
 """Memory of a node that has loaded its kernels."""
 
+import contextlib
 import ctypes
+import importlib
+import sys
 from pathlib import Path
 from typing import Iterator, Optional, Tuple
 
 # LLVM, through which numba compiles and loads kernels.
 COMPILER = "libllvmlite"
 MADV_DONTNEED = 4
+# Module of numba that looks for a BLAS on import, and the package in which it looks.
+NUMBA_ARRAYS, LINEAR_ALGEBRA = "numba.np.arraymath", "scipy.linalg"
+
+
+def load_numba_without_blas() -> None:
+    """Load numba's array functions without SciPy's linear algebra, 10 MiB that small kernels do not use.
+
+    A kernel with matrix products or decompositions loads it when it is compiled.
+    """
+    if NUMBA_ARRAYS in sys.modules or LINEAR_ALGEBRA in sys.modules:
+        return
+    sys.modules[LINEAR_ALGEBRA] = None  # type: ignore[assignment]  # importing it fails at once
+    try:
+        with contextlib.suppress(ImportError):
+            importlib.import_module(NUMBA_ARRAYS)
+    finally:
+        del sys.modules[LINEAR_ALGEBRA]
 
 
 def release_compiler() -> int:

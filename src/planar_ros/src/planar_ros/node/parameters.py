@@ -9,11 +9,11 @@ import rospy
 from dynamic_reconfigure.encoding import extract_params
 from dynamic_reconfigure.server import Server
 
-from planar import SettingsError
+from planar import PlanarError, SettingsError
 from planar.config.hints import hint
 from planar.config.parameters import DynamicParameter, dynamic_parameters_of, parameters_of
 from planar.config.settings import settings_from
-from planar.config.without_effect import SettingsWithoutEffect
+from planar.config.without_effect import SettingsWithoutEffect, refuse, summary
 
 # Parameter that dynamic_reconfigure adds to a node's parameters.
 RESTORE = "restore_defaults"
@@ -31,7 +31,7 @@ def read_settings(
     namespace: str = "~",
     ignore: Iterable[str] = (),
     defaults: Mapping[str, Any] = {},
-    without_effect: Mapping[str, str] = {},
+    without_effect: Callable[[T], Mapping[str, str]] = lambda settings: {},
 ) -> T:
     """Read a settings dataclass from the parameter server (see planar.config.settings).
 
@@ -45,7 +45,8 @@ def read_settings(
         namespace: Namespace of the parameters.
         ignore: Further known names.
         defaults: Values for parameters that are not set, instead of the defaults of ``kind``.
-        without_effect: Names of parameters that are accepted without effect, with the reason.
+        without_effect: Returns for settings the names of parameters, fields of ``kind`` or not, that have
+            no effect with them, with the reasons; they are named if they are set.
 
     Returns:
         The settings.
@@ -56,12 +57,14 @@ def read_settings(
     where = rospy.resolve_name(namespace).rstrip("/") + "/"
     values = {name: value for name, value in parameters_below(where).items() if not isinstance(value, dict)}
     settings, unknown = settings_from(kind, {**defaults, **values}, names, where, _report_wrong_type)
-    known = {*names, *kind.__dataclass_fields__, *ignore, *without_effect, STRICT, RESTORE}  # type: ignore[attr-defined]
+    ineffective = without_effect(settings)
+    known = {*names, *kind.__dataclass_fields__, *ignore, *ineffective, STRICT, RESTORE}  # type: ignore[attr-defined]
     found = SettingsWithoutEffect()
-    for name in without_effect.keys() & values.keys():
-        found.add(where + name, without_effect[name])
+    for name in sorted(ineffective.keys() & values.keys()):
+        found.add(where + name, ineffective[name])
     unknown = [name for name in unknown if name not in known]
-    report_without_effect(found, [f"unknown parameter {where}{name}{hint(name, known)}" for name in unknown])
+    unknown_texts = [f"unknown parameter {where}{name}{hint(name, known)}" for name in unknown]
+    report_without_effect([*found], unknown_texts, is_strict())
     return settings
 
 
@@ -71,26 +74,33 @@ def is_strict() -> bool:
     return bool(place is not None and rospy.get_param(place))
 
 
-def report_without_effect(found: SettingsWithoutEffect, unknown: Sequence[str]) -> None:
-    """Log the parameters without effect and a summary; a strict node refuses them.
+def report_without_effect(
+    known: Sequence[str],
+    unknown: Sequence[str],
+    strict: bool,
+    error: Type[PlanarError] = SettingsError,
+    parameter: str = STRICT,
+) -> None:
+    """Log settings without effect and a summary; a strict node refuses them.
 
     Args:
-        found: Parameters that are known and have no effect.
-        unknown: One warning for each unknown parameter.
+        known: One sentence for each setting that is accepted without effect.
+        unknown: One warning for each setting that is not known.
+        strict: Whether the node refuses them.
+        error: Class of the error.
+        parameter: Parameter of the node that makes it strict.
 
     Raises:
-        SettingsError: The node is strict and there are such parameters.
+        PlanarError: Of the class ``error``: the node is strict and there are such settings.
     """
-    if is_strict():
-        if unknown:
-            raise SettingsError(unknown[0])
-        found.refuse()
-    for text in found:
+    if strict:
+        refuse([*unknown, *known], error)
+    for text in known:
         rospy.loginfo("%s", text)
     for warning in unknown:
         rospy.logwarn("%s", warning)
-    if len(found) or unknown:
-        rospy.logwarn("%s", found.summary("the lines above", len(unknown)))
+    if known or unknown:
+        rospy.logwarn("%s", summary(len(known) + len(unknown), f"~{parameter}"))
 
 
 def parameters_below(namespace: str) -> Dict[str, Any]:

@@ -13,12 +13,17 @@ T = TypeVar("T")
 
 
 class CallQueue:
-    """Calls that are run between two steps of the simulation; callers get the result or the error."""
+    """Calls that are run between two steps of the simulation; callers get the result or the error.
+
+    Attributes:
+        submitted: Number of calls so far.
+    """
 
     def __init__(self):
         self._pending: Deque[Tuple[Callable, Future, str]] = deque()
         self._changed = threading.Condition()
         self._is_closed = self._has_new = False
+        self.submitted = 0
 
     def call(self, function: Callable[[], T]) -> T:
         """Run a function between two steps, wait for it, and return its result.
@@ -41,6 +46,7 @@ class CallQueue:
             else:
                 self._pending.append((function, future, caller()))
             self._has_new = True
+            self.submitted += 1
             self._changed.notify_all()
         return future
 

@@ -15,12 +15,13 @@ from planar.geometry.pose import pose_of_text
 from planar_ros.lockstep import transport
 from planar_ros.lockstep.transport import LockstepConnection
 from planar_ros.messages.conversion import pose2_from_msg, time_of
-from planar_ros.node.parameters import parameters_below, read_settings
+from planar_ros.node.parameters import parameters_below, read_settings, report_without_effect
 from planar_ros.node.runner import run
 from rospy_transport.replacements import install
 from sim_bridge.config import BridgeSettings, RobotSettings, SimulationSettings
 from sim_bridge.description import RobotProfile, read_sdf_robot
 from sim_bridge.docks import with_dock
+from sim_bridge.errors import WorldError
 from sim_bridge.geometry.pose3 import to_pose2
 from sim_bridge.noise import noise_named
 from sim_bridge.pacing import Pacer
@@ -30,7 +31,6 @@ from sim_bridge.ros.description import find_file, model_folders
 from sim_bridge.ros.faults.service import FaultServer
 from sim_bridge.ros.gazebo import GazeboInterface
 from sim_bridge.ros.gazebo.server import NAMESPACE
-from sim_bridge.ros.notices import log_warnings
 from sim_bridge.ros.performance import Performance
 from sim_bridge.ros.robot_manager import RobotManager
 from sim_bridge.ros.timing.lock_step import LockStep
@@ -70,7 +70,8 @@ class Bridge:
             world = with_dock(world, pose_of_text(settings.dock, "~dock"))
         robots = _robots_of(world, robot)
         profiles = (profile for _, profile, *_ in robots)
-        log_warnings([*world.warnings, *chain(*(each.warnings for each in profiles))], settings.strict)
+        warnings = [*world.warnings, *chain(*(each.warnings for each in profiles))]
+        report_without_effect([], warnings, settings.strict, WorldError, "strict")
         self._calls = CallQueue()
         self._faults = FaultServer(settings.faults_file, settings.seed, self._calls)
         self._scene = Scene(world, simulation_settings, settings.seed, self._faults.wrappers)

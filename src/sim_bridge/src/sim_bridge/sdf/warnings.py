@@ -2,6 +2,7 @@
 
 from typing import AbstractSet, Dict, Hashable, Iterator, List, Sequence, Tuple
 
+from planar.config.without_effect import refuse
 from sim_bridge.errors import WorldError
 from sim_bridge.sdf.element import TRUE, Element
 from sim_bridge.sdf.supported import DEFAULTS, IGNORED, IRRELEVANT, REDUNDANT_PLUGINS, plugin_name
@@ -71,14 +72,9 @@ class SkippedElements:
             text + (f" (and {count - 1} more like it)" if count > 1 else "")
             for text, count in self._lines.values()
         ]
-        refuse(lines, self._strict)
+        if self._strict:
+            refuse(lines, WorldError)
         return lines
-
-
-def refuse(lines: Sequence[str], strict: bool) -> None:
-    """Raise a WorldError that lists warnings, if there are any and they are errors (``strict``)."""
-    if lines and strict:
-        raise WorldError("\n".join([*lines, "remove what has no effect, or do without strict"]))
 
 
 def unread(root: Element, excluded: AbstractSet[Hashable] = frozenset()) -> Iterator[Tuple[Element, Element]]:

@@ -37,7 +37,7 @@ class SlamNode:
             NodeSettings,
             official_names(NodeSettings),
             ignore=["seed"],
-            without_effect=dict.fromkeys(WITHOUT_EFFECT, NO_PARTICLES),
+            without_effect=lambda settings: dict.fromkeys(WITHOUT_EFFECT, NO_PARTICLES),
         )
         self._mapper = ThreadSafeMapper(settings)
         self._odometry_check = OdometryCheck()

@@ -59,16 +59,24 @@ def link_substitutes(substitutes: Mapping[Path, Path], checkout: Path) -> None:
 def complete_package(package: Path, stand_in: Path, replaces_robots: bool) -> None:
     """Link what the stand-in has more into a package of the copy: files of the author's take precedence.
 
+    Programs are those of the stand-in: others of the same name are no longer executable, since rosrun starts
+    a program only if the package has one of its name.
+
     Args:
         package: Folder of the package.
         stand_in: Folder of this workspace's package of the same name.
         replaces_robots: Robot descriptions of the stand-in take precedence.
     """
-    for file in sorted(stand_in.rglob("*")):
+    files = [file for file in sorted(stand_in.rglob("*")) if file.is_file()]
+    programs = {file.name for file in files if os.access(file, os.X_OK)}
+    for file in package.rglob("*"):
+        if file.name in programs and file.is_file():
+            file.chmod(file.stat().st_mode & ~0o111)
+    for file in files:
         target = package / file.relative_to(stand_in)
-        if not file.is_file() or any(parent.is_file() for parent in target.parents):
+        if any(parent.is_file() for parent in target.parents):
             continue
-        if replaces_robots and file.suffix in ROBOTS:
+        if file.name in programs or (replaces_robots and file.suffix in ROBOTS):
             target.unlink(missing_ok=True)
         if not target.exists() and not target.is_symlink():
             target.parent.mkdir(parents=True, exist_ok=True)

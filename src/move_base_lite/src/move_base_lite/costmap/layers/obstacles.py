@@ -195,7 +195,7 @@ class ObstacleLayer(Layer):
             observation.directions_xy,
             observation.ranges,
             np.atleast_1d(observation.heights),
-            (source.min_obstacle_height, min(source.max_obstacle_height, self._settings.max_obstacle_height)),
+            (source.min_obstacle_height, source.max_obstacle_height, self._settings.max_obstacle_height),
             (observation.range_min, observation.range_max),
             window.resolution,
             mark_range,
@@ -214,13 +214,11 @@ class ObstacleLayer(Layer):
         rows = round((window.origin_y - before.origin_y) / window.resolution)
         if not (rows or cols):
             return False
-        moved = np.full_like(self._costs, self._default)
-        height, width = self._costs.shape
-        if abs(rows) < height and abs(cols) < width:
-            kept = self._costs[max(rows, 0) : height + min(rows, 0), max(cols, 0) : width + min(cols, 0)]
-            moved[max(-rows, 0) : height + min(-rows, 0), max(-cols, 0) : width + min(-cols, 0)] = kept
-        self._costs = moved
+        self._shift(rows, cols)
         return True
+
+    def _shift(self, rows: int, cols: int) -> None:
+        self._costs = rolled(self._costs, rows, cols, self._default)
 
     def apply(self, costs: np.ndarray, window: CostmapWindow, bounds: CellBounds) -> None:
         if self._settings.combination_method != IGNORE_LAYER:
@@ -247,6 +245,23 @@ class ObstacleLayer(Layer):
             buffer.kept = same[0].kept if same else []
 
 
+def rolled(cells: np.ndarray, rows: int, cols: int, default: int) -> np.ndarray:
+    """Return the cells of a window that has moved.
+
+    Args:
+        cells: Cells before (rows, cols).
+        rows: Rows by which the window has moved.
+        cols: Columns by which the window has moved.
+        default: Value of the cells that have entered the window.
+    """
+    moved = np.full_like(cells, default)
+    height, width = cells.shape
+    if abs(rows) < height and abs(cols) < width:
+        kept = cells[max(rows, 0) : height + min(rows, 0), max(cols, 0) : width + min(cols, 0)]
+        moved[max(-rows, 0) : height + min(-rows, 0), max(-cols, 0) : width + min(-cols, 0)] = kept
+    return moved
+
+
 @numba.njit(cache=True)
 def _integrate(
     costs, block, sensor, directions, ranges, heights, height_limits, range_limits, resolution, mark_range,
@@ -255,8 +270,8 @@ def _integrate(
     """Clear along all beams, at most so many cells, or mark their ends.
 
     ``sensor`` is its position, x and y in cells, z in metres, and its yaw; ``block`` contains all cells that
-    can change. Marks count by their distance from the sensor in three dimensions. Of rays with the same end
-    in the block one is traced.
+    can change; ``height_limits`` are those of the source and the highest that is marked. Marks count by their
+    distance from the sensor in three dimensions. Of rays with the same end in the block one is traced.
     """
     x, y, z, yaw = sensor
     c, s = math.cos(yaw) / resolution, math.sin(yaw) / resolution
@@ -281,7 +296,11 @@ def _integrate(
                     continue
                 traced[int(spares_end), row - row_min, col - col_min] = True
             _clear_ray(costs, math.floor(x), math.floor(y), col, row, clear_cells, spares_end)
-        elif is_return and reach * reach + (height - z) * (height - z) < mark_range * mark_range:
+        elif (
+            is_return
+            and height <= height_limits[2]
+            and reach * reach + (height - z) * (height - z) < mark_range * mark_range
+        ):
             row, col = math.floor(end_y), math.floor(end_x)
             if row_min <= row < row_max and col_min <= col < col_max:
                 costs[row, col] = LETHAL
@@ -332,26 +351,10 @@ def _clear_ray(costs, col, row, end_col, end_row, most_cells, spares_end):
 # Parameters that are read with the sources.
 ELSEWHERE = frozenset({"observation_sources", "obstacle_range", "raytrace_range"})
 TOLERANCE = IneffectiveParameter("transform_tolerance", 0.2, "that of the costmap applies", is_dynamic=False)
-FLAT = "this layer has no voxels, obstacles are flat"
-VOXELS = (
-    IneffectiveParameter("origin_z", 0.0, FLAT, 0.0),
-    IneffectiveParameter("z_resolution", 0.2, FLAT, 0.0, 50.0),
-    IneffectiveParameter("z_voxels", 10, FLAT, 0, 16),
-    IneffectiveParameter("unknown_threshold", 15, FLAT, 0, 16),
-    IneffectiveParameter("mark_threshold", 0, FLAT, 0, 16),
-    IneffectiveParameter("publish_voxel_map", False, FLAT, is_dynamic=False),
-)
 OBSTACLES: Plugin[Layer] = Plugin(
     "costmap_2d::ObstacleLayer",
     ObstacleSettings,
     ObstacleLayer,
     without_effect=(TOLERANCE,),
-    elsewhere=ELSEWHERE,
-)
-VOXEL: Plugin[Layer] = Plugin(
-    "costmap_2d::VoxelLayer",
-    ObstacleSettings,
-    ObstacleLayer,
-    without_effect=(*VOXELS, TOLERANCE),
     elsewhere=ELSEWHERE,
 )

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 from functools import partial
-from typing import Callable, Dict, List
+from typing import Callable, Dict, List, Sequence
 
 import gazebo_msgs.srv as srv
 import numpy as np
@@ -10,6 +10,7 @@ import rospy
 from sim_bridge_msgs.msg import SpawnedModel, SpawnedModels
 
 from planar import PlanarError
+from planar_ros.node.parameters import report_without_effect
 from sim_bridge.description import RobotProfile, read_prop, read_sdf_robot, read_urdf_robot
 from sim_bridge.errors import NoDriveError, UnknownEntityError, WorldError
 from sim_bridge.geometry.pose3 import to_pose2
@@ -17,7 +18,6 @@ from sim_bridge.physics.kinematics import KinematicState
 from sim_bridge.ros.description import find_file
 from sim_bridge.ros.gazebo.server import SCOPE_HINT, GazeboServer, frame_named
 from sim_bridge.ros.messages import pose3_from_msg, pose3_to_msg
-from sim_bridge.ros.notices import log_warnings
 from sim_bridge.ros.robot_manager import RobotManager
 from sim_bridge.scene import Scene
 from sim_bridge.sdf import read_model
@@ -107,15 +107,18 @@ class SpawnServices:
         except NoDriveError:
             prop = read_prop(request.model_xml, request.model_name, pose, find_file)
             return self._insertions(request, prop, pose)
-        log_warnings(robot.warnings, self._strict)
+        self._report(robot.warnings)
         return [partial(self._add_robot, request, robot, pose)]
+
+    def _report(self, warnings: Sequence[str]) -> None:
+        report_without_effect([], warnings, self._strict, WorldError, "strict")
 
     def _insertions(self, request, model: World, pose: np.ndarray) -> Insertions:
         if not (model.bodies or model.robots):
             raise WorldError("; ".join([f"{request.model_name} has no links", *model.warnings]))
         driven = [read_sdf_robot(robot) for robot in model.robots]
         warnings = [text for profile, _ in driven for text in profile.warnings]
-        log_warnings([*model.warnings, *warnings], self._strict)
+        self._report([*model.warnings, *warnings])
         robots = [partial(self._add_robot, request, *robot) for robot in driven]
         insertions: Insertions = [partial(self._scene.add, model.bodies, model.joints), *robots]
         if model.bodies:

@@ -1,10 +1,13 @@
 """Connection check: whether every subscriber of the synchronized nodes is connected to its publishers."""
 
+import os
+import socket
 import xmlrpc.client
 from itertools import chain
-from typing import Any, Collection, Dict, List, Set, Tuple
+from typing import Any, Collection, Dict, List, Optional, Set, Tuple
 
 import rosgraph
+import rosgraph.network
 import rospy
 
 from planar_ros.lockstep.transport import ANSWER_TOPIC, STATIC_TOPIC
@@ -65,6 +68,32 @@ class ConnectionCheck:
         names = set(chain(*(chain(*table.values()) for table in tables)))
         return names, set(tables[0].get(ANSWER_TOPIC, ()))
 
+    def local_process(self, name: str = "") -> Optional[int]:
+        """Return the process of a node on this machine; None without.
+
+        Args:
+            name: Name of the node; empty for the master.
+        """
+        try:
+            uri = _query(self._master, "lookupNode", name) if name else self._master
+            pid = _query(uri, "getPid") if _is_local(uri) else None
+        except _UNAVAILABLE:
+            return None
+        return pid if pid and pid != os.getpid() else None
+
+    def registrations(self) -> NodesByName:
+        """Return the topics and services of all nodes, by the name of the node; empty without the master."""
+        try:
+            tables = self._state()
+        except _UNAVAILABLE:
+            return {}
+        found: NodesByName = {}
+        for table in tables:
+            for entry, names in table.items():
+                for name in names:
+                    found.setdefault(name, []).append(entry)
+        return found
+
     def _state(self) -> Tuple[NodesByName, NodesByName, NodesByName]:
         published, subscribed, services = _query(self._master, "getSystemState")
         return dict(published), dict(subscribed), dict(services)
@@ -80,6 +109,13 @@ class ConnectionCheck:
             del self._uris[name]
             raise
         return {(name, topic, receiver) for _, receiver, direction, _, topic, *_ in bus if direction == "o"}
+
+
+def _is_local(uri: str) -> bool:
+    """Whether a node's address is one of this machine."""
+    host = rosgraph.network.parse_http_host_and_port(uri)[0]
+    own = {"localhost", "127.0.0.1", socket.gethostname(), *rosgraph.network.get_local_addresses()}
+    return host in own
 
 
 def _query(uri: str, method: str, *arguments: str) -> Any:

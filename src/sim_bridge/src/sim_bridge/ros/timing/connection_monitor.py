@@ -1,5 +1,6 @@
 """Monitors whether all synchronised nodes have joined and are connected with each other."""
 
+import math
 import threading
 import time
 from typing import Collection, Dict, FrozenSet, List, Set
@@ -7,6 +8,7 @@ from typing import Collection, Dict, FrozenSet, List, Set
 import rospy
 
 from planar_ros.lockstep.client import observers
+from sim_bridge.process_rest import is_native
 from sim_bridge.ros.timing.connection_check import ConnectionCheck
 
 # Names of the observers to wait for, separated by spaces; a launch file knows them before they start.
@@ -34,11 +36,13 @@ class ConnectionMonitor:
     Attributes:
         is_complete: Whether all are there and connected, or given up.
         observers: Nodes that are not synchronised and must miss no message, as far as they are known.
+        unable: Expected nodes that have started and do not support lock-step.
     """
 
     def __init__(self, simulator: str, expected: Collection[str], static_publishers: Collection[str]):
         self.is_complete = not expected
         self.observers: FrozenSet[str] = frozenset()
+        self.unable: FrozenSet[str] = frozenset()
         self._simulator = simulator
         self._joined: Set[str] = set()
         self._absent = set(expected)
@@ -58,6 +62,7 @@ class ConnectionMonitor:
         with self._changed:
             self._joined.add(name)
             self._absent.discard(name)
+            self.unable -= {name}
         self.recheck()
 
     def recheck(self) -> None:
@@ -68,8 +73,10 @@ class ConnectionMonitor:
                 self.is_complete = False
                 self._changed.notify_all()
 
-    def given_up(self) -> List[str]:
-        """Return what has been given up since the last call, as texts for a log."""
+    def shortcomings(self) -> List[str]:
+        """Return the new reasons since the last call why not all is synchronised as expected."""
+        if not self._unreported:
+            return []
         with self._changed:
             unreported, self._unreported = self._unreported, []
         return unreported
@@ -100,10 +107,10 @@ class ConnectionMonitor:
         limits: Dict[str, float] = {}
         known, able = self._connection_check.known_nodes() if absent else (set(), set())
         for name in absent:
-            if name in known and name not in able:
-                limits[f"the node {name}, which does not support lock-step"] = JOIN_SECONDS
-            else:
+            if name not in known or name in able:
                 limits[f"the node {name}"] = START_SECONDS
+            elif not self._is_unable(name):
+                limits[f"the node {name} to ask for lock-step"] = START_SECONDS
         self.observers = observers()
         for name in sorted(self._expected_observers - self.observers):
             limits[f"the observer {name}"] = START_SECONDS
@@ -112,13 +119,26 @@ class ConnectionMonitor:
                 limits[f"the connection of {gap}"] = CONNECT_SECONDS
         return [text for text, seconds in limits.items() if not self._is_given_up(text, seconds)]
 
+    def _is_unable(self, name: str) -> bool:
+        """Whether a node that has started does not support lock-step: it is native, or late to ask."""
+        if name in self.unable:
+            return True
+        late_since = self._missing_since.get(f"the node {name} to ask for lock-step", math.inf)
+        pid = self._connection_check.local_process(name)
+        if time.monotonic() - late_since <= JOIN_SECONDS and not (pid and is_native(pid)):
+            return False
+        with self._changed:
+            self.unable |= {name}
+            self._unreported.append(f"{name} does not support lock-step")
+        return True
+
     def _is_given_up(self, text: str, seconds: float) -> bool:
         now = time.monotonic()
         if text not in self._given_up and now - self._missing_since.setdefault(text, now) > seconds:
             rospy.logwarn("no sign of %s after %g s: the simulation continues without it", text, seconds)
             with self._changed:
                 self._given_up.add(text)
-                self._unreported.append(text)
+                self._unreported.append(f"time went on without {text}")
         return text in self._given_up
 
 

@@ -86,6 +86,16 @@ class LockStep:
         return frozenset(name[1:] for name in self.members)
 
     @property
+    def unable(self) -> FrozenSet[str]:
+        """Names of the nodes to synchronise that do not support it."""
+        return self._connections.unable
+
+    @property
+    def is_answered(self) -> bool:
+        """Whether all synchronised nodes have answered the latest tick."""
+        return self._delivered or not self._coordinator.unanswered()
+
+    @property
     def awaited(self) -> Sequence[str]:
         """The nodes for whose answers simulated time is stopped."""
         return self._coordinator.unanswered() if self._blocked_since is not None else ()
@@ -102,9 +112,9 @@ class LockStep:
         """
         if self._coordinator.delivery_due(stamp):
             self._check_topology(self._name, transport.topology())
+        for shortcoming in self._connections.shortcomings():
+            self.add_remark(shortcoming)
         if not self._connections.is_complete:
-            for missing in self._connections.given_up():
-                self.add_remark(f"time went on without {missing}")
             return False
         if not self._delivered and self._coordinator.delivery_due(stamp) and not self._deliver(stamp):
             return False

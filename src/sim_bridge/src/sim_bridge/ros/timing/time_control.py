@@ -15,9 +15,11 @@ from planar_ros.messages.conversion import time_of
 from planar_ros.node.parameters import SettingsReconfigureServer
 from planar_ros.node.readiness import ReadinessMonitor, StallReporter
 from sim_bridge.config import RunTimeSettings
-from sim_bridge.pacing import Pacer
+from sim_bridge.pacing import REAL_TIME, Pacer
+from sim_bridge.rest_barrier import LOOK_SECONDS
 from sim_bridge.ros.call_queue import CallQueue
 from sim_bridge.ros.timing.lock_step import LockStep
+from sim_bridge.ros.timing.paced_nodes import PacedNodes
 from sim_bridge.scene import Scene
 
 # Longest single wait [wall s], so that a shutdown is noticed soon.
@@ -45,6 +47,7 @@ class TimeControl:
     def __init__(self, scene: Scene, pacer: Pacer, lock_step: LockStep, calls: CallQueue):
         self.is_paused = False
         self._lock_step = lock_step
+        self._paced = PacedNodes(calls, lock_step.add_remark)
         self._scene = scene
         self._pacer = pacer
         self._calls = calls
@@ -83,7 +86,9 @@ class TimeControl:
             return self._wait(LONGEST_WAIT_SECONDS)
         if self._calls.has_pending:  # of what was just delivered
             return self._wait(0.0)
-        self._pacer.synchronised_nodes = self._lock_step.member_names
+        if not self._have_nodes_rested():
+            return self._wait(LOOK_SECONDS)
+        self._pacer.synchronised_nodes = self._lock_step.member_names | self._paced.names
         wall, stamp = time.monotonic(), self._scene.stamp + self._scene.step_seconds
         delay = self._pacer.delay(stamp, wall, is_limited=not self.is_paused)
         if delay <= 0.0:
@@ -91,6 +96,14 @@ class TimeControl:
         for name in self._pacer.give_up(stamp, wall):
             rospy.logwarn("no progress of %s: the simulation goes on without it in real time", name)
         return self._wait(min(delay, LONGEST_WAIT_SECONDS))
+
+    def _have_nodes_rested(self) -> bool:
+        """Whether nodes have caught up that neither support lock-step nor report; not asked in real time."""
+        unable = self._lock_step.unable
+        if not unable or 0.0 < self.speed <= REAL_TIME:
+            return True
+        self._paced.set_nodes(unable - {f"/{name}" for name in self._pacer.reporting})
+        return self._paced.may_step(self._scene.stamp, self._lock_step.is_answered)
 
     def _wait(self, seconds: float) -> bool:
         """Send what has been published, wait for calls, at most ``seconds``, and return False."""
@@ -103,6 +116,7 @@ class TimeControl:
             return []
         return [
             *self._lock_step.waiting_for(),
+            *self._paced.waiting_for(),
             *self._pacer.lagging_nodes(self._scene.stamp + self._scene.step_seconds),
         ]
 
@@ -126,6 +140,7 @@ class TimeControl:
         self._scene.reset()
         self._pacer.reset()
         self._lock_step.reset_time()
+        self._paced.reset_time()
         rospy.loginfo("the simulation starts again at time 0")
 
     def close(self) -> None:

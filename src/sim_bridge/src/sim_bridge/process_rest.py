@@ -1,0 +1,66 @@
+"""Whether the threads of a process rest: all wait, none is running or ready to run (proc(5))."""
+
+import os
+from pathlib import Path
+from typing import Dict
+
+# States of threads that wait, for an event or because they are stopped or have ended.
+WAITING_STATES = frozenset(b"SItTXZ")
+# Bytes of /proc/PID/task/TID/stat up to the state: two numbers and a name of at most 64 bytes.
+STAT_BYTES = 128
+PROC = Path("/proc")
+
+
+class ProcessThreads:
+    """Threads of another process on this machine.
+
+    Args:
+        pid: Process.
+        proc: Folder of the kernel's process information.
+    """
+
+    def __init__(self, pid: int, proc: Path = PROC):
+        self.pid = pid
+        self._folder = proc / str(pid) / "task"
+        self._files: Dict[str, int] = {}
+
+    def are_resting(self) -> bool:
+        """Return whether all threads wait.
+
+        Raises:
+            ProcessLookupError: The process has ended.
+        """
+        try:
+            names = os.listdir(self._folder)
+        except OSError:
+            raise ProcessLookupError(self.pid) from None
+        for gone in self._files.keys() - set(names):
+            os.close(self._files.pop(gone))
+        return all(self._is_waiting(name) for name in names)
+
+    def close(self) -> None:
+        """Close the files of the threads."""
+        while self._files:
+            os.close(self._files.popitem()[1])
+
+    def _is_waiting(self, name: str) -> bool:
+        try:
+            if name not in self._files:
+                self._files[name] = os.open(self._folder / name / "stat", os.O_RDONLY | os.O_CLOEXEC)
+            stat = os.pread(self._files[name], STAT_BYTES, 0)
+        except OSError:
+            return True  # the thread has ended
+        return stat[stat.rfind(b")") + 2] in WAITING_STATES
+
+
+def is_native(pid: int, proc: Path = PROC) -> bool:
+    """Return whether a process runs a program that is not Python, such as a node of roscpp.
+
+    Args:
+        pid: Process.
+        proc: Folder of the kernel's process information.
+    """
+    try:
+        return "python" not in Path(os.readlink(proc / str(pid) / "exe")).name
+    except OSError:
+        return False

@@ -1,0 +1,160 @@
+"""Simulated time passes beside other people's nodes when they rest, and never waits for ever."""
+
+import subprocess
+import sys
+import time
+
+import pytest
+
+from sim_bridge.process_rest import ProcessThreads, is_native
+from sim_bridge.rest_barrier import MOST_NEWS, OTHERS_PATIENCE_SECONDS, RECOVERY_SECONDS, RestBarrier
+
+PERIOD, QUIET, PATIENCE, LOOK = 0.05, 0.002, 5.0, 0.0005
+
+
+class Run:
+    """A simulation with nodes that are busy until given wall times."""
+
+    AWAITED = frozenset({"amcl", "move_base", "planner", "spinning"})
+
+    def __init__(self, **busy_until):
+        self.barrier = RestBarrier(PERIOD, QUIET, PATIENCE)
+        self.busy_until, self.wall, self.stamp = busy_until, 0.0, 0.0
+
+    def step(self, news_until=0.0):
+        """Wait until the next step of 0.05 s may be taken; return the wall time that it took."""
+        begun = self.wall
+        while not self.barrier.may_step(
+            self.stamp, self.wall, self._nodes(), self.AWAITED, self.wall < news_until
+        ):
+            self.wall += LOOK
+            assert self.wall - begun < 60.0, "the simulation stands still"
+        self.stamp += PERIOD
+        return self.wall - begun
+
+    def _nodes(self):
+        return {name: lambda until=until: self.wall >= until for name, until in self.busy_until.items()}
+
+
+def test_time_passes_when_all_nodes_have_rested_for_a_while():
+    run = Run(amcl=0.010, move_base=0.030)
+    assert run.step() == pytest.approx(0.030 + QUIET, abs=2 * LOOK)
+    assert run.step() == pytest.approx(QUIET, abs=2 * LOOK)
+
+
+def test_between_two_barriers_nothing_is_waited_for():
+    run = Run(move_base=0.0)
+    run.step()
+    run.busy_until["move_base"] = 1.0
+    assert run.barrier.may_step(PERIOD / 2, run.wall, run._nodes(), run.AWAITED, False)
+
+
+def test_a_message_that_arrives_is_processed_before_time_passes():
+    run = Run(amcl=0.0)
+    assert run.step(news_until=0.004) == pytest.approx(0.004 + QUIET, abs=2 * LOOK)
+
+
+def test_a_node_that_floods_does_not_stop_time():
+    run = Run(amcl=0.0)
+    assert run.step(news_until=1000.0) < MOST_NEWS * LOOK + QUIET + 2 * LOOK
+
+
+def test_a_node_that_never_rests_is_given_up_and_the_others_are_waited_for():
+    run = Run(spinning=1e9, amcl=0.0)
+    assert run.step() == pytest.approx(PATIENCE, abs=0.01)
+    assert [*run.barrier.given_up] == ["spinning"]
+    run.busy_until["amcl"] = run.wall + 0.02
+    assert run.step() == pytest.approx(0.02 + QUIET, abs=2 * LOOK)
+
+
+def test_a_further_node_that_never_rests_is_given_up_soon():
+    run = Run(amcl=0.0, viewer=1e9)
+    assert run.step() == pytest.approx(OTHERS_PATIENCE_SECONDS, abs=0.01)
+    assert run.step() == pytest.approx(QUIET, abs=2 * LOOK)
+
+
+def test_a_node_that_is_late_once_is_waited_for_again():
+    run = Run(planner=PATIENCE + 1.0)
+    run.step()
+    assert [*run.barrier.given_up] == ["planner"]
+    run.wall = PATIENCE + 1.0 + LOOK
+    run.step()
+    run.wall += RECOVERY_SECONDS + 1.5
+    run.step()
+    assert not run.barrier.given_up
+
+
+def test_a_node_that_has_ended_is_forgotten():
+    run = Run(spinning=1e9)
+    run.step()
+    del run.busy_until["spinning"]
+    run.step()
+    assert not run.barrier.given_up
+
+
+def test_time_that_restarts_has_barriers_again():
+    run = Run(amcl=0.0)
+    run.step()
+    run.barrier.reset()
+    run.stamp, run.busy_until["amcl"] = 0.0, run.wall + 0.01
+    assert run.step() > 0.01
+
+
+SPIN = "while True: pass"
+REST = "import threading, time; threading.Thread(target=time.sleep, args=(60,)).start(); time.sleep(60)"
+
+
+@pytest.fixture
+def program():
+    started = []
+
+    def start(code):
+        started.append(
+            subprocess.Popen([sys.executable, "-c", f"print(flush=True)\n{code}"], stdout=subprocess.PIPE)
+        )
+        started[-1].stdout.readline()
+        return started[-1]
+
+    yield start
+    for process in started:
+        process.kill()
+        process.wait()
+
+
+def rests(threads, wanted):
+    """Whether the threads are seen as wanted within some time."""
+    end = time.monotonic() + 10.0
+    while threads.are_resting() != wanted and time.monotonic() < end:
+        time.sleep(0.001)
+    return threads.are_resting() == wanted
+
+
+def test_threads_that_sleep_rest(program):
+    threads = ProcessThreads(program(REST).pid)
+    assert rests(threads, True)
+    threads.close()
+
+
+def test_a_thread_that_computes_does_not_rest(program):
+    assert rests(ProcessThreads(program(SPIN).pid), False)
+
+
+def test_an_ended_process_is_noticed(program):
+    process = program(REST)
+    threads = ProcessThreads(process.pid)
+    threads.are_resting()
+    process.kill()
+    process.wait()
+    with pytest.raises(ProcessLookupError):
+        threads.are_resting()
+
+
+def test_a_program_of_python_is_not_native(program):
+    assert not is_native(program(REST).pid)
+    shell = subprocess.Popen(["sleep", "60"])
+    try:
+        assert is_native(shell.pid)
+    finally:
+        shell.kill()
+        shell.wait()
+    assert not is_native(shell.pid), "it has ended"

@@ -1,0 +1,58 @@
+#!/usr/bin/env python3
+"""A node that knows nothing of lock-step: simulated time waits until it rests, and does not wait for ever."""
+
+import threading
+import time
+import unittest
+
+import rospy
+import rostest
+from recording import is_connected_to_all
+from rosgraph_msgs.msg import Log
+from std_msgs.msg import Float64
+from waiting import wait_until
+
+from planar_ros.messages.conversion import LaserScanArrays
+
+SCAN_PERIOD, WORK_SECONDS = 0.1, 0.02
+GIVEN_UP = "paced_node has computed for 5 s without a pause: the simulation goes on in real time"
+
+
+class TestPacedNode(unittest.TestCase):
+    def test_time_keeps_pace_with_the_node_until_it_never_rests(self):
+        stamps, factors, ahead = [], [], []
+
+        def work(scan):
+            stamps.append(scan.header.stamp.to_sec())
+            compute(WORK_SECONDS)
+            ahead.append(rospy.get_time() - stamps[-1])
+
+        rospy.Subscriber("scan", LaserScanArrays, work, queue_size=1, tcp_nodelay=True)
+        rospy.Subscriber("sim_bridge/real_time_factor", Float64, lambda message: factors.append(message.data))
+        wait_until("more than real time", lambda: max(factors, default=0.0) > 1.5, 60.0)
+        first = len(stamps)
+        wait_until("scans", lambda: len(stamps) > first + 100, 60.0)
+        gaps = [later - earlier for earlier, later in zip(stamps[first:], stamps[first + 1 :])]
+        self.assertLess(max(gaps), SCAN_PERIOD + 1e-6, "the node misses no scan although it keeps only one")
+        self.assertLess(max(ahead[first:]), SCAN_PERIOD, "time waits for the work on each scan")
+
+        logged, stop = [], threading.Event()
+        log = rospy.Subscriber("/rosout", Log, lambda line: logged.append((line.name, line.msg)))
+        wait_until("the log", lambda: is_connected_to_all(log))
+        threading.Thread(target=lambda: compute(60.0, stop), daemon=True).start()
+        wait_until("the name of the node that never rests", lambda: ("/sim_bridge", GIVEN_UP) in logged, 30.0)
+        stamp = rospy.get_time()
+        wait_until("time to go on", lambda: rospy.get_time() > stamp + 2.0, 30.0)
+        stop.set()
+
+
+def compute(seconds, stop=threading.Event()):
+    """Compute for a time, or until it is stopped."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end and not stop.is_set():
+        pass
+
+
+if __name__ == "__main__":
+    rospy.init_node("paced_node")
+    rostest.rosrun("home_service_tests", "paced_node", TestPacedNode)
