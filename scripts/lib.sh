@@ -164,6 +164,12 @@ is_asked_for_web() { # ARGUMENT...
     is_among --web "$@" || is_among --web-port "${@%%=*}"
 }
 
+is_drawing_given() { # ARGUMENT...: a DXF or IFC file
+    local argument
+    for argument; do [[ ${argument,,} != *.dxf && ${argument,,} != *.ifc ]] || return 0; done
+    return 1
+}
+
 run_command() { # PACKAGE NAME ARGUMENT...: a command, after the set-up it needs
     answer_help "$@"
     local extras=()
@@ -173,6 +179,7 @@ run_command() { # PACKAGE NAME ARGUMENT...: a command, after the set-up it needs
         laboratory) extras+=(laboratory) ;;
         home_service_gym) extras+=(gymnasium) ;;
         service) extras+=(service) ;;
+        home_builder) ! is_drawing_given "$@" || extras+=(drawings) ;;
     esac
     set_up "${extras[@]}"
     enter_workspace
