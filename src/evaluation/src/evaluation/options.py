@@ -65,7 +65,9 @@ class WorldOptions:
     def _take_parts(self, home: HomeFolder) -> None:
         defaults = {item.name: item.default for item in fields(self)}
         if self.world not in (defaults["world"], home.world, home.world.resolve()):
-            raise SettingsError(f"--world: {self.world} does not belong to the home {self.home}; leave one of them out")
+            raise SettingsError(
+                f"--world: {self.world} does not belong to the home {self.home}; leave one of them out"
+            )
         for name in ("world", "map", "zones", "mission"):
             if name in defaults and getattr(self, name) == defaults[name]:
                 object.__setattr__(self, name, getattr(home, name))

@@ -148,7 +148,7 @@ def _pairs(stops: List[str]) -> List[Tuple[str, str]]:
 
 def _navigation_text(plan: Plan) -> str:
     x, y = plan.start
-    entries = {}
+    entries: Dict[str, Dict[str, Any]] = {}
     for zone in plan.zones:
         corners = [[round(a - x, DIGITS), round(b - y, DIGITS)] for a, b in zone.corners]
         entries[zone.name] = {"kind": zone.kind, "corners": corners}

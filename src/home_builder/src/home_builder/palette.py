@@ -1,4 +1,4 @@
-"""The palette of furniture: each kind as boxes and cylinders in the unit cube, scaled to the size of a piece."""
+"""The palette of furniture: each kind as boxes and cylinders, scaled to the size of a piece."""
 
 from dataclasses import dataclass
 from typing import Dict, List, Sequence, Tuple

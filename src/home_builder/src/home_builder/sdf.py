@@ -1,12 +1,12 @@
 """The world of a plan as SDF 1.6, which Gazebo Classic, libsdformat and sim_bridge read."""
 
 import math
-from typing import Iterator, List, Sequence, Tuple
+from typing import Iterator, Sequence
 from xml.sax.saxutils import quoteattr
 
 from home_builder.palette import BOX, KINDS, OUTLINE, OUTLINE_COLOUR, Triple
-from home_builder.plan.geometry import end_extensions
-from home_builder.plan.model import Furniture, Plan, Wall
+from home_builder.plan.geometry import end_extensions, wall_blocks
+from home_builder.plan.model import Furniture, Plan
 
 WALL_COLOUR = (0.92, 0.9, 0.86)
 HEAD = """<?xml version='1.0'?>
@@ -49,33 +49,6 @@ def _walls_model(plan: Plan) -> Iterator[str]:
             yield from _solid(f"part_{index}", where, _box(size), WALL_COLOUR)
         yield "      </link>\n"
     yield "    </model>\n"
-
-
-def wall_blocks(
-    wall: Wall, before: float = 0.0, after: float = 0.0
-) -> List[Tuple[float, float, float, float]]:
-    """Return the blocks around the openings of a wall.
-
-    Args:
-        wall: The wall.
-        before: Length added at its start [m].
-        after: Length added at its end [m].
-
-    Returns:
-        First and last distance from the start, bottom and top of each block [m].
-    """
-    blocks: List[Tuple[float, float, float, float]] = []
-    solid_from = -before
-    for opening in sorted(wall.openings, key=lambda each: each.first):
-        first, last = max(opening.first, 0.0), min(opening.last, wall.length)
-        # An opening that reaches an end leaves nothing of the extension there either.
-        first, last = (-before if first < 1e-6 else first), (wall.length + after if last > wall.length - 1e-6 else last)
-        blocks.append((solid_from, first, 0.0, wall.height))
-        blocks.append((first, last, 0.0, opening.bottom))
-        blocks.append((first, last, opening.top, wall.height))
-        solid_from = last
-    blocks.append((solid_from, wall.length + after, 0.0, wall.height))
-    return [block for block in blocks if block[1] - block[0] > 1e-3 and block[3] - block[2] > 1e-3]
 
 
 def _furniture_model(plan: Plan, piece: Furniture, number: int) -> Iterator[str]:

@@ -45,7 +45,11 @@ def folder_of(source: Path, output: Optional[Path]) -> Path:
     if output is None:
         is_home = source.is_dir() or source.name == PLAN
         output = (source if source.is_dir() else source.parent) if is_home else HOMES / source.stem
-    is_other = output.is_dir() and any(output.iterdir()) and not any((output / each).exists() for each in (MANIFEST, PLAN))
+    is_other = (
+        output.is_dir()
+        and any(output.iterdir())
+        and not any((output / each).exists() for each in (MANIFEST, PLAN))
+    )
     if is_other:
         raise ImportPlanError(f"--output: {output} has other files and is no home; choose a new folder")
     return output

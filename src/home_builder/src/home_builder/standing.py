@@ -7,9 +7,10 @@ from typing import Dict, List, Optional, Tuple
 import numpy as np
 import shapely
 from scipy.ndimage import label
+from shapely.ops import polylabel
 
 from home_builder.palette import OUTLINE
-from home_builder.plan.geometry import furniture_polygon, room_faces
+from home_builder.plan.geometry import furniture_polygon, room_faces, wall_polygons
 from home_builder.plan.model import Place, Plan
 from planar import FREE, OccupancyGrid, SettingsError
 from planar.geometry.distance_field import distance_field
@@ -20,6 +21,8 @@ PASSAGE, COMFORT, LEAST = 0.25, 0.8, 0.35
 REACH = 1.2
 # Shortest way of a delivery, as the crow flies [m].
 MIN_DISTANCE = 1.0
+# Clearance at a start that is chosen, and the grid on which it lies [m].
+START_CLEARANCE, CELL = 0.4, 0.05
 PICKUP, DROPOFF = "pickup", "dropoff"
 
 
@@ -66,7 +69,7 @@ class StandingRoom:
 
 
 def all_places(plan: Plan, grid: OccupancyGrid) -> Dict[str, Place]:
-    """Return the places of a home by name: those of the plan, of its rooms and furniture, pick-up and drop-off.
+    """Return the places of a home by name: of the plan, of rooms and furniture, pick-up and drop-off.
 
     Args:
         plan: The plan.
@@ -116,7 +119,9 @@ def _furniture_places(plan: Plan, standing: StandingRoom) -> List[Place]:
         distances = shapely.distance(polygon, shapely.points(standing.points_xy))
         if not len(distances) or distances.min() > REACH:
             continue
-        x, y = standing.points_xy[np.argmin(distances + 0.2 * _off_axis(standing.points_xy, polygon))].tolist()
+        x, y = standing.points_xy[
+            np.argmin(distances + 0.2 * _off_axis(standing.points_xy, polygon))
+        ].tolist()
         yaw = math.atan2(polygon.centroid.y - y, polygon.centroid.x - x)
         places.append(Place(name, x, y, yaw))
     return places
@@ -139,3 +144,26 @@ def _ends(standing: StandingRoom, rooms: List[Place]) -> List[Tuple[float, float
     if math.dist(first, last) < MIN_DISTANCE:
         raise SettingsError("the home is too small for a delivery: no two places are 1 m apart")
     return [tuple(first.tolist()), tuple(last.tolist())]
+
+
+def free_start(plan: Plan) -> Tuple[float, float]:
+    """Return where a robot can start: the middle of the largest room, or of what the walls surround [m].
+
+    Args:
+        plan: Plan without a start.
+
+    Raises:
+        SettingsError: There is no room for the robot.
+    """
+    solids = shapely.union_all([*wall_polygons(plan.walls), *map(furniture_polygon, plan.furniture)])
+    faces = [face.polygon for face in room_faces(plan)] or [solids.convex_hull]
+    for face in faces:
+        free = face.difference(solids)
+        largest = max(getattr(free, "geoms", [free]), key=lambda part: part.area)
+        if largest.area < START_CLEARANCE**2:
+            continue
+        middle = polylabel(largest, CELL)
+        if largest.boundary.distance(middle) > START_CLEARANCE:
+            x, y = (round(round(each / CELL) * CELL, 4) for each in (middle.x, middle.y))
+            return x, y
+    raise SettingsError("the walls leave no room in which the robot fits")

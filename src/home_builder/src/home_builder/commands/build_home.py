@@ -21,7 +21,10 @@ class BuildHome:
         None, "folder of the home (default: the file's name in homes)", type=Path, metavar="FOLDER"
     )
     scale: Optional[float] = option(
-        None, "size of a pixel of a picture, or of a unit of a DXF file, in metres", type=number, metavar="METRES"
+        None,
+        "size of a pixel of a picture, or of a unit of a DXF file, in metres",
+        type=number,
+        metavar="METRES",
     )
 
     def run(self) -> int:
@@ -31,7 +34,8 @@ class BuildHome:
         plan, folder = read_source(self.file, self.scale), folder_of(self.file, self.output)
         for remark in build_home(plan, folder):
             print(f"warning: {remark}")
-        doors = sum(len(wall.openings) for wall in plan.walls)
-        print(f"{folder}: {len(plan.walls)} walls, {doors} doors and windows, {len(plan.furniture)} pieces of furniture")
+        openings = sum(len(wall.openings) for wall in plan.walls)
+        walls = f"{len(plan.walls)} walls, {openings} doors and windows"
+        print(f"{folder}: {walls}, {len(plan.furniture)} pieces of furniture")
         print(f"run its mission: ./scripts/home_service.sh --home {folder}")
         return 0

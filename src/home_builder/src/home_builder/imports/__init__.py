@@ -36,7 +36,10 @@ def import_plan(path: Path, scale: Optional[float] = None) -> Plan:
         return _importer("dxf", "import_dxf")(path, scale)
     if scale is not None:
         raise ImportPlanError(f"{path}: --scale is for pictures and DXF files; this file has its own")
-    importers = {**dict.fromkeys(MAPS, ("maps", "import_map")), **dict.fromkeys(WORLDS, ("worlds", "import_world"))}
+    importers = {
+        **dict.fromkeys(MAPS, ("maps", "import_map")),
+        **dict.fromkeys(WORLDS, ("worlds", "import_world")),
+    }
     importers[".ifc"] = ("ifc", "import_ifc")
     if suffix not in importers:
         raise ImportPlanError(f"{path}: unknown kind of file; expected one of {', '.join(SUFFIXES)}")
@@ -49,5 +52,7 @@ def _importer(module: str, name: str) -> Callable[..., Plan]:
         return getattr(importlib.import_module(f"home_builder.imports.{module}"), name)
     except ModuleNotFoundError as error:
         if (error.name or "").split(".")[0] in ("ezdxf", "ifcopenshell"):
-            raise ImportPlanError(f"{error.name} is not installed: ./scripts/setup.sh --drawings installs it") from None
+            raise ImportPlanError(
+                f"{error.name} is not installed: ./scripts/setup.sh --drawings installs it"
+            ) from None
         raise

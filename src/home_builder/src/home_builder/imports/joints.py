@@ -106,7 +106,8 @@ def _merged_with_next(
         ends = sorted(_local(wall, *end) for end in (other.start, other.end))
         is_in_line = all(abs(across) <= 1.5 * slack + 0.01 for _, across in ends)
         gap = ends[0][0] - wall.length
-        if is_in_line and -slack <= gap <= MAX_WINDOW and (best is None or gap < best[1]):
+        goes_on = ends[1][0] > wall.length + slack
+        if is_in_line and goes_on and -slack <= gap <= MAX_WINDOW and (best is None or gap < best[1]):
             best = (number, gap, ends[1][0])
     if best is None:
         return None
@@ -118,7 +119,7 @@ def _merged_with_next(
 
 
 def _opening(wall: Wall, gap: float, slack: float, gap_kind: GapKind) -> Optional[Tuple[Opening, ...]]:
-    """Return the opening in the gap behind a wall's end, none for walls that touch; None if they stay apart."""
+    """Return the opening in the gap behind a wall, none for walls that touch; None if they stay apart."""
     if gap <= 2.0 * slack:
         return ()
     kind = gap_kind(wall.end, wall.point_at(wall.length + gap), wall.thickness)
@@ -161,7 +162,7 @@ def _reversed(wall: Wall) -> Wall:
 
 
 def _gap_to_wall_across(wall: Wall, index: int, walls: Sequence[Wall]) -> Optional[float]:
-    """Return the distance from a wall's end to the face of the nearest wall across it; None if none is near."""
+    """Return the distance from a wall's end to the face of the nearest wall across it; None without one."""
     nearest = None
     for number, other in enumerate(walls):
         if number == index or abs(math.sin(other.yaw - wall.yaw)) < 0.7:
@@ -184,4 +185,6 @@ def rounded(wall: Wall, digits: int = 4) -> Wall:
         replace(each, at=round(float(each.at), digits), width=round(float(each.width), digits))
         for each in wall.openings
     )
-    return replace(wall, start=ends[0], end=ends[1], thickness=round(wall.thickness, digits), openings=openings)
+    return replace(
+        wall, start=ends[0], end=ends[1], thickness=round(wall.thickness, digits), openings=openings
+    )

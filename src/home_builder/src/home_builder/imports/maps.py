@@ -47,7 +47,9 @@ def plan_of_map(grid: OccupancyGrid, name: str) -> Plan:
         raise ImportPlanError(f"{name}: the map has no occupied cells, so there are no walls to import")
     corner = _aligned(grid)
     inside = max(1, int(round(INSIDE_OF_WALL / grid.resolution)))
-    closed = binary_closing(np.pad(occupied, inside), np.ones((inside, inside)))[inside:-inside, inside:-inside]
+    closed = binary_closing(np.pad(occupied, inside), np.ones((inside, inside)))[
+        inside:-inside, inside:-inside
+    ]
     solid = SolidCells(occupied | (closed & (grid.cells == UNKNOWN)), grid.resolution, corner)
     strips, rest = straight_walls(solid)
     walls = join_walls(strips, grid.resolution, _free_gaps(grid, corner))

@@ -7,14 +7,14 @@ import numpy as np
 import shapely
 from scipy.ndimage import find_objects, label
 from shapely import affinity
-from shapely.geometry import MultiPolygon, Polygon, box
+from shapely.geometry import Polygon, box
 
 from home_builder.imports.wall_strips import SolidCells
 from home_builder.palette import OUTLINE
 from home_builder.plan.model import Furniture
 
-# Share of its smallest rectangle that a box fills; fewest cells of a piece; height of furniture on a map [m].
-BOX_FILL, FEWEST_CELLS, HEIGHT = 0.9, 2, 0.8
+# Share of its smallest rectangle that a box fills; height of furniture on a map [m].
+BOX_FILL, HEIGHT = 0.9, 0.8
 DIGITS = 4
 
 
@@ -28,8 +28,6 @@ def furniture_from_cells(solid: SolidCells) -> List[Furniture]:
     pieces: List[Furniture] = []
     for number, window in enumerate(find_objects(labels), 1):
         part = labels[window] == number
-        if part.sum() < FEWEST_CELLS:
-            continue
         corner = np.array([window[1].start, window[0].start]) * solid.resolution + solid.corner
         shape = cells_polygon(part, solid.resolution)
         for polygon in _simple(shape, solid.resolution):
@@ -55,10 +53,8 @@ def _simple(shape, resolution: float) -> Iterator[Polygon]:
 
 def without_holes(polygon) -> Iterator[Polygon]:
     """Yield the parts of a polygon that is cut through its holes, as furniture has an outline only."""
-    if polygon.is_empty or polygon.geom_type not in ("Polygon", "MultiPolygon"):
-        return
-    if isinstance(polygon, MultiPolygon):
-        for part in polygon.geoms:
+    if not isinstance(polygon, Polygon):  # several; lines and points between them are none
+        for part in getattr(polygon, "geoms", ()):
             yield from without_holes(part)
     elif not polygon.interiors:
         if polygon.area > 1e-6:

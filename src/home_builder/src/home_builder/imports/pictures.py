@@ -76,9 +76,8 @@ def _shades(path: Path) -> np.ndarray:
         with Image.open(io.BytesIO(read_bytes(path))) as image:
             if image.width * image.height > MAX_PIXELS:
                 size = f"{image.width} x {image.height}"
-                raise ImportPlanError(
-                    f"{path}: {size} pixels are more than {MAX_PIXELS // 1_000_000} million; reduce the picture"
-                )
+                most = f"{MAX_PIXELS // 1_000_000} million"
+                raise ImportPlanError(f"{path}: {size} pixels are more than {most}; reduce the picture")
             opaque = Image.new("RGBA", image.size, "white")
             opaque.alpha_composite(image.convert("RGBA"))
             return np.flipud(np.asarray(opaque.convert("L")))
@@ -105,8 +104,9 @@ def _dark(shades: np.ndarray, path: Path) -> np.ndarray:
     if not np.isfinite(between).any() or np.ptp(shades) < 32:
         raise ImportPlanError(f"{path}: shows no plan, as all of it has about the same brightness")
     if dark.mean() > MOST_DARK:
+        share = f"{dark.mean():.0%}"
         raise ImportPlanError(
-            f"{path}: {dark.mean():.0%} of it are dark; walls must be darker than the floor: invert the picture"
+            f"{path}: {share} of it are dark; walls must be darker than the floor: invert the picture"
         )
     return dark
 

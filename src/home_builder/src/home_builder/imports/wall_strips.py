@@ -11,7 +11,7 @@ from home_builder.plan.model import Wall
 
 # Shortest wall, thickest wall, and gap that a run of cells is continued over [m].
 MIN_LENGTH, MAX_THICKNESS, RUN_GAP = 0.4, 0.45, 0.12
-# Directions that are tried one after the other, the step between two [deg], and the number of projected points.
+# Directions that are tried one after the other, the step between two [deg], number of projected points.
 MOST_DIRECTIONS, STEP, MOST_POINTS = 6, 0.5, 20_000
 # Share of the cells that are in no wall yet which a further direction must promise.
 WORTHWHILE = 0.02
@@ -88,7 +88,7 @@ def main_direction(solid: SolidCells) -> float:
 
 
 def _concentration(points_xy: np.ndarray, degrees: float, bin_size: float) -> float:
-    """Return the sum of the squared counts of points by their distance from an axis, for it and that across."""
+    """Return the sum of the squared counts of points by their distance from an axis and from that across."""
     yaw = math.radians(degrees)
     score = 0.0
     for axis in ((math.cos(yaw), math.sin(yaw)), (-math.sin(yaw), math.cos(yaw))):
@@ -131,7 +131,7 @@ def _turned(solid: SolidCells, yaw: float) -> Tuple[np.ndarray, np.ndarray]:
     turned = affine_transform(
         solid.cells.astype(np.float32), matrix, offset, (side, side), order=1, prefilter=False
     )
-    return turned > 0.5, middle
+    return turned > 0.4, middle
 
 
 def _along_rows(cells: np.ndarray, resolution: float) -> np.ndarray:

@@ -24,7 +24,8 @@ MAX_THICKNESS, MIN_LENGTH, MIN_HEIGHT, MAX_BOTTOM = 0.4, 0.4, 0.8, 0.1
 CUT, DEFAULT_HEIGHT = 0.3, 0.8
 # Uncertainty of the ends of walls [m].
 SLACK = 0.02
-MAX_PIECES = 2000
+# Most pieces, and how far their outlines may be simplified [m].
+MAX_PIECES, ROUNDING = 2000, 0.01
 
 
 def import_world(path: Path) -> Plan:
@@ -52,7 +53,9 @@ def import_world(path: Path) -> Plan:
             elif not isinstance(part.shape, Plane):
                 furniture += _pieces(part, pose, body.model if len(body.collisions) == 1 else "")
     if not walls:
-        raise ImportPlanError(f"{path}: the world has no walls, that is upright boxes that stand on the floor")
+        raise ImportPlanError(
+            f"{path}: the world has no walls, that is upright boxes that stand on the floor"
+        )
     if len(furniture) > MAX_PIECES:
         raise ImportPlanError(f"{path}: {len(furniture)} solids are more than {MAX_PIECES}")
     joined = join_walls(walls, SLACK)
@@ -80,7 +83,7 @@ def _pieces(part: Collision, pose: np.ndarray, name: str) -> List[Furniture]:
     """Return the convex outlines of a solid at the height of a laser as furniture."""
     pieces = []
     for outline in slice_shape(part.shape, pose, CUT - 0.005, CUT + 0.005):
-        hull = MultiPoint(outline).convex_hull
+        hull = MultiPoint(outline).convex_hull.simplify(ROUNDING)
         if isinstance(hull, Polygon) and hull.area > 1e-4:
             pieces.append(piece_of(hull, DEFAULT_HEIGHT, name))
     return pieces
@@ -90,4 +93,3 @@ def _with_single_names(furniture: List[Furniture]) -> List[Furniture]:
     """Keep the names that one piece only has."""
     counts = Counter(piece.name for piece in furniture)
     return [piece if counts[piece.name] == 1 else replace(piece, name="") for piece in furniture]
-

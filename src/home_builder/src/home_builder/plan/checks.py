@@ -7,20 +7,21 @@ from typing import Iterator, List
 
 import shapely
 from shapely.geometry import Point as ShapelyPoint
-from shapely.geometry import Polygon
 
 from home_builder.plan.geometry import (
     TOUCHING,
     doorway_polygons,
     furniture_polygon,
     room_faces,
+    solid_polygons,
     wall_line,
-    wall_polygons,
 )
 from home_builder.plan.model import Plan, Wall
 
 # Shortest wall [m].
 MIN_LENGTH = 0.05
+# Length below which an opening's edge is at the end of its wall [m].
+ROUNDING = 1e-3
 # Width of the narrowest door that the robot passes [m].
 MIN_DOOR = 0.55
 # Distance from the robot's centre to solids at a place [m].
@@ -66,10 +67,10 @@ def _opening_problems(plan: Plan) -> Iterator[Problem]:
     for number, wall in enumerate(plan.walls, 1):
         for opening in wall.openings:
             where, name = wall.point_at(opening.at), f"a {opening.kind} in wall {number}"
-            if opening.width > wall.length + 1e-6:
+            if opening.width > wall.length + ROUNDING:
                 text = f"{name} is wider than the wall: {opening.width:.2f} of {wall.length:.2f} m"
                 yield Problem(text, *where)
-            elif opening.first < -1e-6 or opening.last > wall.length + 1e-6:
+            elif opening.first < -ROUNDING or opening.last > wall.length + ROUNDING:
                 yield Problem(f"{name} reaches beyond the end of the wall", *where)
             elif opening.bottom >= wall.height:
                 yield Problem(f"{name} is above the wall, which is {wall.height:g} m high", *where)
@@ -82,7 +83,7 @@ def _opening_problems(plan: Plan) -> Iterator[Problem]:
 def _overlaps(number: int, wall: Wall) -> Iterator[Problem]:
     ordered = sorted(wall.openings, key=lambda opening: opening.first)
     for one, other in zip(ordered, ordered[1:]):
-        if one.last > other.first + 1e-6:
+        if one.last > other.first + ROUNDING:
             yield Problem(f"two openings of wall {number} overlap", *wall.point_at(other.at))
 
 
@@ -94,7 +95,11 @@ def _crossings(plan: Plan) -> Iterator[Problem]:
     pairs = shapely.STRtree(lines).query(lines, predicate="crosses").T
     for one, other in sorted({(min(pair), max(pair)) for pair in pairs.tolist()}):
         where = lines[one].intersection(lines[other])
-        ends = [ShapelyPoint(end) for wall in (plan.walls[one], plan.walls[other]) for end in (wall.start, wall.end)]
+        ends = [
+            ShapelyPoint(end)
+            for wall in (plan.walls[one], plan.walls[other])
+            for end in (wall.start, wall.end)
+        ]
         slack = TOUCHING + max(plan.walls[one].thickness, plan.walls[other].thickness)
         if where.geom_type == "Point" and min(where.distance(end) for end in ends) > slack:
             yield Problem(f"walls {one + 1} and {other + 1} cross", where.x, where.y, is_error=False)
@@ -115,21 +120,18 @@ def _room_problems(plan: Plan) -> Iterator[Problem]:
 
 
 def _place_problems(plan: Plan) -> Iterator[Problem]:
-    solids = [*_walls_without_doors(plan), *map(furniture_polygon, plan.furniture)]
+    solids = [*solid_polygons(plan.walls), *map(furniture_polygon, plan.furniture)]
     tree = shapely.STRtree(solids)
     points = [("the start", *plan.start), *((f"place {each.name}", each.x, each.y) for each in plan.places)]
     for name, x, y in points:
         if len(tree.query(ShapelyPoint(x, y), predicate="dwithin", distance=ROBOT_RADIUS)):
             yield Problem(f"{name} is in a wall or furniture, or too close to it", x, y)
-    for name, count in Counter(each.name for each in (*plan.places, *plan.rooms)).items():
-        if count > 1:
-            where = next(each for each in (*plan.places, *plan.rooms) if each.name == name)
-            yield Problem(f"the name {name} is given {count} times", where.x, where.y)
-    for one, other in combinations([zone for zone in plan.zones], 2):
+    names = [(each.name, each.x, each.y) for each in plan.places]
+    names += [(each.name, each.x, each.y) for each in plan.rooms]
+    counts = Counter(name for name, _, _ in names)
+    for name, x, y in {each[0]: each for each in names}.values():
+        if counts[name] > 1:
+            yield Problem(f"the name {name} is given {counts[name]} times", x, y)
+    for one, other in combinations(plan.zones, 2):
         if one.name == other.name:
             yield Problem(f"the name of zone {one.name} is given twice", *one.corners[0])
-
-
-def _walls_without_doors(plan: Plan) -> Iterator[Polygon]:
-    doors = shapely.union_all(doorway_polygons(plan.walls))
-    return (polygon.difference(doors) for polygon in wall_polygons(plan.walls))

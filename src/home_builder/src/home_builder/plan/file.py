@@ -119,7 +119,9 @@ def _furniture(table: Table) -> Furniture:
     table.allow_only("kind", "x", "y", "yaw", "size", "name", "corners")
     kind = table.choice("kind", (*KINDS, OUTLINE))
     width, depth, height = (
-        table.numbers("size", "width, depth, height") if "size" in table else KINDS.get(kind, KINDS["box"]).size
+        table.numbers("size", "width, depth, height")
+        if "size" in table
+        else KINDS.get(kind, KINDS["box"]).size
     )
     is_size = all(0.0 < side <= MAX_COORDINATE for side in (width, depth, height))
     table.check(is_size, "size", "three positive lengths")

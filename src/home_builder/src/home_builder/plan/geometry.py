@@ -17,6 +17,8 @@ from home_builder.plan.model import DOOR, Furniture, Plan, Point, Wall
 CLOSING_GAP, MIN_ROOM_AREA = 0.1, 0.8
 # The same where furniture closes gaps of walls, as on a map: walls behind it were not seen.
 FURNITURE_GAP, MIN_FURNISHED_AREA = 0.3, 2.0
+# Length below which a part of a wall is left out, and height of the robot [m].
+NEGLIGIBLE, ROBOT_HEIGHT = 1e-3, 0.5
 # Distance within which the end of a wall is on another wall's centre line [m].
 TOUCHING = 0.02
 
@@ -44,7 +46,7 @@ def end_extensions(walls: Sequence[Wall]) -> List[Tuple[float, float]]:
 
     A wall that ends on the centre line of another one is extended to its far face, so that corners close.
     """
-    extensions = [[0.0, 0.0] for _ in walls]
+    extensions = np.zeros((len(walls), 2))
     ends = shapely.points([end for wall in walls for end in (wall.start, wall.end)])
     if not len(ends):
         return []
@@ -54,8 +56,8 @@ def end_extensions(walls: Sequence[Wall]) -> List[Tuple[float, float]]:
         index, side = divmod(number, 2)
         if index == other or _are_parallel(walls[index], walls[other]):
             continue
-        extensions[index][side] = max(extensions[index][side], walls[other].thickness / 2.0)
-    return [(start, end) for start, end in extensions]
+        extensions[index, side] = max(extensions[index, side], walls[other].thickness / 2.0)
+    return [(float(start), float(end)) for start, end in extensions]
 
 
 def _are_parallel(one: Wall, other: Wall) -> bool:
@@ -67,6 +69,46 @@ def wall_polygons(walls: Sequence[Wall]) -> List[Polygon]:
     return [
         section(wall, -before, wall.length + after)
         for wall, (before, after) in zip(walls, end_extensions(walls))
+    ]
+
+
+def solid_polygons(walls: Sequence[Wall]) -> List[Polygon]:
+    """Return the footprints of what is solid of walls at the height of the robot: they end at doors."""
+    return [
+        section(wall, first, last)
+        for wall, extension in zip(walls, end_extensions(walls))
+        for first, last, bottom, _ in wall_blocks(wall, *extension)
+        if bottom < ROBOT_HEIGHT
+    ]
+
+
+def wall_blocks(
+    wall: Wall, before: float = 0.0, after: float = 0.0
+) -> List[Tuple[float, float, float, float]]:
+    """Return the blocks around the openings of a wall.
+
+    Args:
+        wall: The wall.
+        before: Length added at its start [m].
+        after: Length added at its end [m].
+
+    Returns:
+        First and last distance from the start, bottom and top of each block [m].
+    """
+    blocks: List[Tuple[float, float, float, float]] = []
+    solid_from = -before
+    for opening in sorted(wall.openings, key=lambda each: each.first):
+        first, last = max(opening.first, 0.0), min(opening.last, wall.length)
+        # An opening that reaches an end leaves nothing of the extension there either.
+        first = -before if first < NEGLIGIBLE else first
+        last = wall.length + after if last > wall.length - NEGLIGIBLE else last
+        blocks.append((solid_from, first, 0.0, wall.height))
+        blocks.append((first, last, 0.0, opening.bottom))
+        blocks.append((first, last, opening.top, wall.height))
+        solid_from = last
+    blocks.append((solid_from, wall.length + after, 0.0, wall.height))
+    return [
+        block for block in blocks if block[1] - block[0] > NEGLIGIBLE and block[3] - block[2] > NEGLIGIBLE
     ]
 
 
@@ -149,9 +191,7 @@ def _named(plan: Plan, faces: Sequence[Polygon]) -> List[RoomFace]:
             if index not in names and face.contains(ShapelyPoint(room.x, room.y)):
                 names[index] = room.name
                 break
-    return [
-        RoomFace(names.get(index) or f"room {next(numbers)}", face) for index, face in enumerate(faces)
-    ]
+    return [RoomFace(names.get(index) or f"room {next(numbers)}", face) for index, face in enumerate(faces)]
 
 
 def corners_of(polygon: Polygon) -> np.ndarray:

@@ -65,7 +65,8 @@ def load_hashes(folder: Path) -> Dict[str, str]:
     """Return the hash of each file in the manifest of a home. Raises SettingsError."""
     if not is_file(folder / MANIFEST):
         raise SettingsError(
-            f"{folder}: is no home, as it has no {MANIFEST}; ./scripts/build_home.sh FILE --output {folder} makes one"
+            f"{folder}: is no home, as it has no {MANIFEST}; "
+            f"./scripts/build_home.sh FILE --output {folder} makes one"
         )
     table = read_table(folder / MANIFEST)
     table.check(table.count("version") == VERSION, "version", f"{VERSION}, that of this program")
@@ -93,9 +94,8 @@ def load_home(folder: Path) -> HomeFolder:
             raise SettingsError(f"{folder / MANIFEST}: lists no {part}; {_again(folder)}")
     present = {name: _hash_of_file(folder / name) for name in hashes}
     if PLAN in hashes and present[PLAN] != hashes[PLAN]:
-        raise SettingsError(
-            f"{folder / PLAN}: was changed after {WORLD}, {IMAGE} and {ZONES} were made from it; {_again(folder)}"
-        )
+        made = f"{WORLD}, {IMAGE} and {ZONES} were made from it"
+        raise SettingsError(f"{folder / PLAN}: was changed after {made}; {_again(folder)}")
     for part in FIXED:
         if present[part] != hashes[part]:
             raise SettingsError(f"{folder / part}: {_complaint(part)}; {_again(folder)}")
