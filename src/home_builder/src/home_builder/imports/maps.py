@@ -68,7 +68,7 @@ def _free_gaps(grid: OccupancyGrid, corner: Point):
 
     def kind(start: Point, end: Point, thickness: float) -> str:
         count = max(2, int(math.dist(start, end) / grid.resolution))
-        shares = (np.arange(count) + 0.5) / count
+        shares = np.linspace(0.1, 0.9, count)  # not the cells of the walls' ends
         line_xy = np.outer(1.0 - shares, start) + np.outer(shares, end)
         cells = np.floor((line_xy[:, ::-1] - corner[::-1]) / grid.resolution).astype(int)
         values = grid.cells[tuple(cells[grid.contains(cells)].T)]
