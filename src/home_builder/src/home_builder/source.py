@@ -32,24 +32,27 @@ def read_source(source: Path, scale: Optional[float] = None) -> Plan:
     return import_plan(source, scale)
 
 
-def folder_of(source: Path, output: Optional[Path]) -> Path:
+def folder_of(source: Optional[Path], output: Optional[Path]) -> Path:
     """Return the folder of the home that is built from a source.
 
     Args:
-        source: Folder, plan.yaml, or a file to import.
+        source: Folder, plan.yaml, or a file to import; None for a home that is drawn.
         output: Folder that was asked for.
 
     Raises:
         ImportPlanError: The folder has other files already.
     """
     if output is None:
-        is_home = source.is_dir() or source.name == PLAN
-        output = (source if source.is_dir() else source.parent) if is_home else HOMES / source.stem
-    is_other = (
-        output.is_dir()
-        and any(output.iterdir())
-        and not any((output / each).exists() for each in (MANIFEST, PLAN))
-    )
-    if is_other:
+        output = _default_folder(source)
+    is_home = any((output / name).exists() for name in (MANIFEST, PLAN))
+    if output.is_dir() and any(output.iterdir()) and not is_home:
         raise ImportPlanError(f"--output: {output} has other files and is no home; choose a new folder")
     return output
+
+
+def _default_folder(source: Optional[Path]) -> Path:
+    if source is None:
+        return HOMES / "home"
+    if source.is_dir():
+        return source
+    return source.parent if source.name == PLAN else HOMES / source.stem

@@ -81,8 +81,11 @@ def all_places(plan: Plan, grid: OccupancyGrid) -> Dict[str, Place]:
     Raises:
         SettingsError: There are fewer than two places.
     """
-    standing = StandingRoom.of_map(grid)
     start_x, start_y = plan.start
+    solids = shapely.union_all([*wall_polygons(plan.walls), *map(furniture_polygon, plan.furniture)])
+    # Outside of all that is solid there is nothing to localize by.
+    inside = shapely.transform(solids.convex_hull, lambda points: points - plan.start)
+    standing = StandingRoom.of_map(grid).inside(inside)
     places = {
         each.name: Place(each.name, each.x - start_x, each.y - start_y, each.yaw, each.radius)
         for each in plan.places

@@ -159,10 +159,11 @@ def _zone(table: Table) -> Zone:
     return Zone(table.text("name"), kind, _points(table, "corners"), speed)
 
 
-def plan_text(plan: Plan) -> str:
-    """Return the text of a plan file; ``parse_plan`` returns an equal plan."""
-    content: Dict[str, Any] = {"name": plan.name, "start": list(plan.start)}
-    lists = {
+def plan_entries(plan: Plan) -> Dict[str, Any]:
+    """Return a plan as tables, lists and numbers, as in its file and in JSON."""
+    return {
+        "name": plan.name,
+        "start": list(plan.start),
         "walls": [_wall_entry(wall) for wall in plan.walls],
         "furniture": [_furniture_entry(piece) for piece in plan.furniture],
         "rooms": [{"name": room.name, "x": room.x, "y": room.y} for room in plan.rooms],
@@ -172,10 +173,19 @@ def plan_text(plan: Plan) -> str:
         ],
         "zones": [_zone_entry(zone) for zone in plan.zones],
     }
+
+
+def plan_text(plan: Plan) -> str:
+    """Return the text of a plan file; ``parse_plan`` returns an equal plan."""
+    entries = plan_entries(plan)
+    content = {key: value for key, value in entries.items() if key in ("name", "start")}
     head = "# The plan of a home: metres and radians. ./scripts/build_home.sh FOLDER builds it again.\n"
-    lines = [head, yaml.safe_dump(content, sort_keys=False, default_flow_style=None, allow_unicode=True)]
-    for key, entries in lists.items():
-        lines += _list_lines(key, entries)
+    lines = [
+        head,
+        yaml.safe_dump(content, sort_keys=False, default_flow_style=None, allow_unicode=True),
+    ]
+    for key in ("walls", "furniture", "rooms", "places", "zones"):
+        lines += _list_lines(key, entries[key])
     return "".join(lines)
 
 
