@@ -22,7 +22,7 @@ from scipy.ndimage import label
 from scipy.spatial import cKDTree
 
 from headless_mission import HeadlessMission
-from home_builder import Plan, build_home
+from home_builder import HomePlan, build_home
 from home_builder.imports import MAPS
 from home_builder.imports.maps import plan_of_map
 from home_builder.source import read_source
@@ -92,7 +92,7 @@ def _inputs(options: argparse.Namespace) -> Iterator[Tuple[str, Optional[Occupan
             yield f"{kind.kind} {seed}", source.arena(seed).grid, Path()
 
 
-def overlap(grid: OccupancyGrid, made: OccupancyGrid, plan: Plan) -> float:
+def overlap(grid: OccupancyGrid, made: OccupancyGrid, plan: HomePlan) -> float:
     """Return the smaller share of occupied cells with one of the other map within a cell."""
     one_xy, other_xy = (each.points_of(np.argwhere(each.cells == OCCUPIED)) for each in (grid, made))
     other_xy = other_xy + plan.start
@@ -101,7 +101,7 @@ def overlap(grid: OccupancyGrid, made: OccupancyGrid, plan: Plan) -> float:
     return min(float((cKDTree(a).query(b, p=np.inf)[0] <= reach).mean()) for a, b in pairs)
 
 
-def rooms_kept(grid: OccupancyGrid, made: OccupancyGrid, plan: Plan) -> Tuple[int, int]:
+def rooms_kept(grid: OccupancyGrid, made: OccupancyGrid, plan: HomePlan) -> Tuple[int, int]:
     """Return how many rooms that the robot reaches in a map it also reaches in the home, and their number."""
     reached, clearance = _reached(grid, plan.start)
     middles, count = label(reached & (clearance > MIDDLE))
@@ -128,7 +128,7 @@ def mission_in(folder: Path, seed: int):
     """Run the mission of a home in one process; return the verdict."""
     home = load_home(folder)
     grid = load_map(home.map)
-    mission = load_mission(home.mission, load_places(home.zones), grid=grid)
+    mission = load_mission(home.mission or "", load_places(home.zones), grid=grid)
     robot = robot_named("turtlebot_lidar")
     return HeadlessMission(load_world(home.world), robot, grid, mission, seed).run().verdict
 

@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 import yaml
 
-from home_builder import Furniture, Opening, Place, Plan, Room, Wall, Zone, build_home
+from home_builder import FurniturePiece, HomePlan, Opening, Place, Room, Wall, Zone, build_home
+from home_builder.errors import InvalidPlanError
 from home_builder.palette import KINDS
 from pick_objects import load_mission
 from planar import FREE, OCCUPIED, SettingsError, load_map
@@ -21,8 +22,8 @@ WALLS = (
     Wall((0.0, 6.0), (0.0, 0.0)),
     Wall((4.0, 0.0), (4.0, 6.0), openings=(Opening("door", 2.0),)),
 )
-BED = Furniture("bed", 1.2, 5.0, 0.0, (2.0, 1.6, 0.9))
-PLAN = Plan(
+BED = FurniturePiece("bed", 1.2, 5.0, 0.0, (2.0, 1.6, 0.9))
+PLAN = HomePlan(
     "house",
     WALLS,
     (BED,),
@@ -64,8 +65,8 @@ def test_the_robot_stops_in_front_of_furniture_and_faces_it(home):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_kind_of_furniture_is_seen_by_a_laser(kind, tmp_path):
-    piece = Furniture(kind, 6.0, 3.0, 0.0, KINDS[kind].size)
-    build_home(Plan(walls=WALLS, furniture=(piece,), start=(2.0, 2.0)), tmp_path / "home")
+    piece = FurniturePiece(kind, 6.0, 3.0, 0.0, KINDS[kind].size)
+    build_home(HomePlan(walls=WALLS, furniture=(piece,), start=(2.0, 2.0)), tmp_path / "home")
     grid = load_map(tmp_path / "home/home.yaml")
     width, depth, _ = piece.size
     corner = (4.0 - width / 2.0 + 0.02, 1.0 - depth / 2.0 + 0.02)
@@ -108,10 +109,10 @@ def test_building_again_keeps_an_edited_mission(home):
 
 
 def test_a_plan_with_errors_writes_nothing(tmp_path):
-    plan = Plan(
+    plan = HomePlan(
         walls=(Wall((0.0, 0.0), (1.0, 0.0), openings=(Opening("door", 0.5, 2.0),)),), start=(5.0, 5.0)
     )
-    with pytest.raises(SettingsError, match=r"wider than the wall: 2.00 of 1.00 m at \(0.50, 0.00\)"):
+    with pytest.raises(InvalidPlanError, match=r"wider than the wall: 2.00 of 1.00 m at \(0.50, 0.00\)"):
         build_home(plan, tmp_path / "home")
     assert not (tmp_path / "home").exists()
 

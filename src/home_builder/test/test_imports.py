@@ -11,7 +11,7 @@ import pytest
 from PIL import Image, ImageDraw
 from scipy.spatial import cKDTree
 
-from home_builder import Opening, Plan, Wall, build_home
+from home_builder import HomePlan, Opening, Wall, build_home
 from home_builder.errors import ImportPlanError
 from home_builder.imports import import_plan
 from home_builder.imports.maps import plan_of_map
@@ -30,7 +30,7 @@ WALLS = (
 )
 
 
-def openings(plan: Plan):
+def openings(plan: HomePlan):
     found = [
         (each.kind, *(round(value, 1) for value in wall.point_at(each.at)), round(each.width, 1))
         for wall in plan.walls
@@ -39,7 +39,7 @@ def openings(plan: Plan):
     return sorted(found)
 
 
-def rooms(plan: Plan):
+def rooms(plan: HomePlan):
     return [round(face.polygon.area, 1) for face in room_faces(plan)]
 
 
@@ -51,7 +51,7 @@ def overlap(grid: OccupancyGrid, other: OccupancyGrid, shift=(0.0, 0.0)) -> floa
     return min(float((distances <= reach).mean()) for distances in nearest)
 
 
-def round_trip(plan: Plan, folder: Path) -> OccupancyGrid:
+def round_trip(plan: HomePlan, folder: Path) -> OccupancyGrid:
     build_home(plan, folder)
     return load_map(folder / "home.yaml")
 
@@ -65,7 +65,7 @@ def test_a_map_of_slam_becomes_a_world_with_the_same_map(tmp_path):
 
 @pytest.mark.parametrize("degrees", [0.0, 17.0, 45.0, 88.5])
 def test_walls_of_any_direction_are_found_in_a_map(degrees, tmp_path):
-    build_home(Plan(walls=WALLS, start=(2.0, 2.0)), tmp_path / "drawn")
+    build_home(HomePlan(walls=WALLS, start=(2.0, 2.0)), tmp_path / "drawn")
     drawn = load_map(tmp_path / "drawn/home.yaml")
     image = Image.fromarray(np.flipud(drawn.cells).astype(np.uint8))
     turned = np.flipud(np.asarray(image.rotate(degrees, expand=True, fillcolor=0)) == OCCUPIED)
@@ -149,10 +149,10 @@ def test_a_world_becomes_walls_with_doors_and_furniture_with_names():
 
 
 def test_a_home_is_imported_from_its_own_world(tmp_path):
-    build_home(Plan(walls=WALLS, start=(2.0, 2.0)), tmp_path / "home")
+    build_home(HomePlan(walls=WALLS, start=(2.0, 2.0)), tmp_path / "home")
     again = import_plan(tmp_path / "home/home.world")
     assert ("door", 2.0, 0.0, 0.9) in openings(again)
-    assert rooms(again) == pytest.approx(rooms(Plan(walls=WALLS)), abs=0.1)
+    assert rooms(again) == pytest.approx(rooms(HomePlan(walls=WALLS)), abs=0.1)
 
 
 def dxf_of(walls, path: Path, unit: int, factor: float) -> None:
@@ -278,7 +278,7 @@ def test_a_broken_file_is_refused_in_a_sentence(name, content, tmp_path):
 
 
 def test_the_source_of_a_home_is_a_file_a_plan_or_a_folder(tmp_path):
-    plan = Plan(walls=WALLS, start=(2.0, 2.0))
+    plan = HomePlan(walls=WALLS, start=(2.0, 2.0))
     build_home(plan, tmp_path / "home")
     assert read_source(tmp_path / "home") == read_source(tmp_path / "home/plan.yaml") == plan
     assert (

@@ -4,7 +4,18 @@ import math
 
 import pytest
 
-from home_builder import Furniture, Opening, Place, Plan, Room, Wall, Zone, parse_plan, plan_text, problems_of
+from home_builder import (
+    FurniturePiece,
+    HomePlan,
+    Opening,
+    Place,
+    Room,
+    Wall,
+    Zone,
+    parse_plan,
+    plan_text,
+    problems_of,
+)
 from home_builder.plan.geometry import end_extensions, room_faces, solid_polygons, wall_blocks
 from planar import SettingsError
 
@@ -15,15 +26,15 @@ OUTER = (
     Wall((0.0, 6.0), (0.0, 0.0)),
 )
 INNER = Wall((4.0, 0.0), (4.0, 6.0), openings=(Opening("door", 2.0),))
-HOUSE = Plan("house", (*OUTER, INNER), rooms=(Room("kitchen", 1.0, 1.0),), start=(2.0, 2.0))
+HOUSE = HomePlan("house", (*OUTER, INNER), rooms=(Room("kitchen", 1.0, 1.0),), start=(2.0, 2.0))
 
 
-def texts(plan: Plan):
+def texts(plan: HomePlan):
     return [problem.text for problem in problems_of(plan)]
 
 
 def test_a_plan_file_is_read_back_without_loss():
-    plan = Plan(
+    plan = HomePlan(
         "Müller: 1",
         (
             Wall(
@@ -35,8 +46,10 @@ def test_a_plan_file_is_read_back_without_loss():
             ),
         ),
         (
-            Furniture("bed", 1.0, 2.0, 0.3, (2.0, 1.5, 0.5), "my bed"),
-            Furniture("outline", 1.0, 2.0, 0.0, (1.0, 1.0, 0.8), "", ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))),
+            FurniturePiece("bed", 1.0, 2.0, 0.3, (2.0, 1.5, 0.5), "my bed"),
+            FurniturePiece(
+                "outline", 1.0, 2.0, 0.0, (1.0, 1.0, 0.8), "", ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))
+            ),
         ),
         (Room("kitchen", 1.0, 1.0),),
         (Place("dock", 1.0, 2.0, 1.5, 0.3),),
@@ -76,9 +89,9 @@ def test_closed_faces_are_rooms_with_doors_taken_as_closed():
 def test_furniture_closes_a_gap_of_a_wall():
     gap = Wall((8.0, 6.0), (2.0, 6.0))
     walls = (OUTER[0], OUTER[1], gap, OUTER[3])
-    assert room_faces(Plan(walls=walls)) == []
-    shelf = Furniture("shelf", 1.0, 6.0, 0.0, (1.9, 0.3, 1.8))
-    assert [face.name for face in room_faces(Plan(walls=walls, furniture=(shelf,)))] == ["room 1"]
+    assert room_faces(HomePlan(walls=walls)) == []
+    shelf = FurniturePiece("shelf", 1.0, 6.0, 0.0, (1.9, 0.3, 1.8))
+    assert [face.name for face in room_faces(HomePlan(walls=walls, furniture=(shelf,)))] == ["room 1"]
 
 
 def test_a_wall_that_ends_on_another_one_reaches_its_far_face():
@@ -103,7 +116,7 @@ def test_a_door_leaves_a_lintel_and_a_window_a_parapet():
 
 def test_a_good_plan_has_no_problems_but_a_room_without_a_door():
     assert texts(HOUSE) == []
-    closed = Plan(walls=(*OUTER, Wall((4.0, 0.0), (4.0, 6.0))), start=(2.0, 2.0))
+    closed = HomePlan(walls=(*OUTER, Wall((4.0, 0.0), (4.0, 6.0))), start=(2.0, 2.0))
     assert texts(closed) == ["room 1 has no door", "room 2 has no door"]
 
 
@@ -136,11 +149,11 @@ def test_a_good_plan_has_no_problems_but_a_room_without_a_door():
 )
 def test_a_problem_is_a_sentence_with_its_place(change, complaint, is_error):
     fields = {"walls": HOUSE.walls, "start": HOUSE.start, **change}
-    found = [problem for problem in problems_of(Plan(**fields)) if complaint in problem.text]
-    assert found, texts(Plan(**fields))
+    found = [problem for problem in problems_of(HomePlan(**fields)) if complaint in problem.text]
+    assert found, texts(HomePlan(**fields))
     assert found[0].is_error == is_error
     assert " at (" in str(found[0])
 
 
 def test_a_place_in_a_doorway_is_allowed():
-    assert texts(Plan(walls=HOUSE.walls, start=HOUSE.start, places=(Place("door", 4.0, 2.0),))) == []
+    assert texts(HomePlan(walls=HOUSE.walls, start=HOUSE.start, places=(Place("door", 4.0, 2.0),))) == []

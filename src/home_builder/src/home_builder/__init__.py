@@ -3,13 +3,13 @@
 from home_builder.folder import build_home
 from home_builder.plan.checks import Problem, problems_of
 from home_builder.plan.file import load_plan, parse_plan, plan_text
-from home_builder.plan.model import Furniture, Opening, Place, Plan, Room, Wall, Zone
+from home_builder.plan.model import FurniturePiece, HomePlan, Opening, Place, Room, Wall, Zone
 
 __all__ = [
-    "Furniture",
+    "FurniturePiece",
     "Opening",
     "Place",
-    "Plan",
+    "HomePlan",
     "Problem",
     "Room",
     "Wall",

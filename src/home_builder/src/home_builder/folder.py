@@ -8,13 +8,14 @@ from typing import Any, Dict, List, Mapping, Tuple
 import yaml
 from PIL import Image
 
+from home_builder.errors import InvalidPlanError
 from home_builder.plan.checks import problems_of
 from home_builder.plan.file import plan_text
 from home_builder.plan.geometry import room_faces
-from home_builder.plan.model import SPEED, Place, Plan
+from home_builder.plan.model import SPEED, HomePlan, Place
 from home_builder.sdf import world_text
 from home_builder.standing import DROPOFF, PICKUP, all_places
-from planar import OccupancyGrid, SettingsError, save_map
+from planar import OccupancyGrid, save_map
 from planar.errors import FileWriteError
 from planar.files.reading import exists
 from planar.files.writing import write_all_atomically
@@ -42,7 +43,7 @@ RESOLUTION = 0.05
 MOST_DELIVERIES, DIGITS = 3, 3
 
 
-def build_home(plan: Plan, folder: Path) -> List[str]:
+def build_home(plan: HomePlan, folder: Path) -> List[str]:
     """Write world, map, zones, mission, picture and manifest of a plan; all files or none.
 
     Args:
@@ -53,13 +54,13 @@ def build_home(plan: Plan, folder: Path) -> List[str]:
         Remarks: the plan's warnings, and which files were kept.
 
     Raises:
-        SettingsError: The plan has errors; the text lists them with their points.
+        InvalidPlanError: The plan has errors; the text lists them with their points.
         PlanarError: A file cannot be read or written.
     """
     problems = problems_of(plan)
     errors = [str(problem) for problem in problems if problem.is_error]
     if errors:
-        raise SettingsError("the plan has errors:\n  " + "\n  ".join(errors))
+        raise InvalidPlanError(errors)
     folder = Path(folder)
     kept = _edited(folder)
     contents = {**home_files(plan), **kept}
@@ -85,7 +86,7 @@ def _edited(folder: Path) -> Dict[str, bytes]:
     return {name: content for name, content in changed_files(folder).items() if name in EDITABLE}
 
 
-def home_files(plan: Plan) -> Dict[str, bytes]:
+def home_files(plan: HomePlan) -> Dict[str, bytes]:
     """Return the files of a home without its manifest: content by name."""
     with tempfile.TemporaryDirectory(prefix="home_builder.") as temporary:
         folder = Path(temporary)
@@ -105,7 +106,7 @@ def _png(pixels) -> bytes:
     return content.getvalue()
 
 
-def _zone_files(plan: Plan, grid: OccupancyGrid) -> Dict[str, bytes]:
+def _zone_files(plan: HomePlan, grid: OccupancyGrid) -> Dict[str, bytes]:
     places = all_places(plan, grid)
     files = {
         ZONES: _zones_text(places),
@@ -130,7 +131,7 @@ def _table(entries: Mapping[str, Any]) -> str:
     return yaml.safe_dump(dict(entries), sort_keys=False, default_flow_style=None, allow_unicode=True)
 
 
-def _mission_text(plan: Plan, places: Mapping[str, Place]) -> str:
+def _mission_text(plan: HomePlan, places: Mapping[str, Place]) -> str:
     """A tour of deliveries between rooms, the largest first, or from pick-up to drop-off."""
     rooms = [face.name for face in room_faces(plan) if face.name in places][: MOST_DELIVERIES + 1]
     stops = rooms if len(rooms) > 1 else [PICKUP, DROPOFF]
@@ -146,7 +147,7 @@ def _pairs(stops: List[str]) -> List[Tuple[str, str]]:
     return list(zip(stops, stops[1:]))
 
 
-def _navigation_text(plan: Plan) -> str:
+def _navigation_text(plan: HomePlan) -> str:
     x, y = plan.start
     entries: Dict[str, Dict[str, Any]] = {}
     for zone in plan.zones:

@@ -6,7 +6,7 @@ from xml.sax.saxutils import quoteattr
 
 from home_builder.palette import BOX, KINDS, OUTLINE, OUTLINE_COLOUR, Triple
 from home_builder.plan.geometry import end_extensions, wall_blocks
-from home_builder.plan.model import Furniture, Plan
+from home_builder.plan.model import FurniturePiece, HomePlan
 
 WALL_COLOUR = (0.92, 0.9, 0.86)
 HEAD = """<?xml version='1.0'?>
@@ -25,7 +25,7 @@ HEAD = """<?xml version='1.0'?>
 TAIL = "  </world>\n</sdf>\n"
 
 
-def world_text(plan: Plan) -> str:
+def world_text(plan: HomePlan) -> str:
     """Return the SDF of a plan, with the start of the robot at the origin."""
     parts = [HEAD.format(name=quoteattr(plan.name))]
     parts += _walls_model(plan)
@@ -34,7 +34,7 @@ def world_text(plan: Plan) -> str:
     return "".join([*parts, TAIL])
 
 
-def _walls_model(plan: Plan) -> Iterator[str]:
+def _walls_model(plan: HomePlan) -> Iterator[str]:
     if not plan.walls:
         return
     yield f"    <model name='walls'>\n      <static>true</static>\n      <pose>{_origin(plan)}</pose>\n"
@@ -51,7 +51,7 @@ def _walls_model(plan: Plan) -> Iterator[str]:
     yield "    </model>\n"
 
 
-def _furniture_model(plan: Plan, piece: Furniture, number: int) -> Iterator[str]:
+def _furniture_model(plan: HomePlan, piece: FurniturePiece, number: int) -> Iterator[str]:
     x, y = piece.x - plan.start[0], piece.y - plan.start[1]
     yield f"    <model name='{piece.kind}_{number}'>\n      <static>true</static>\n"
     yield f"      <pose>{_numbers(x, y, 0.0, 0.0, 0.0, piece.yaw)}</pose>\n      <link name='link'>\n"
@@ -83,12 +83,12 @@ def _cylinder(size: Triple) -> str:
     return f"<cylinder><radius>{radius:.6g}</radius><length>{size[2]:.6g}</length></cylinder>"
 
 
-def _polyline(piece: Furniture) -> str:
+def _polyline(piece: FurniturePiece) -> str:
     points = "".join(f"<point>{_numbers(*corner)}</point>" for corner in piece.corners)
     return f"<polyline>{points}<height>{piece.size[2]:.6g}</height></polyline>"
 
 
-def _origin(plan: Plan) -> str:
+def _origin(plan: HomePlan) -> str:
     return _numbers(-plan.start[0], -plan.start[1], 0.0, 0.0, 0.0, 0.0)
 
 

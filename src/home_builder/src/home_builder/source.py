@@ -6,14 +6,14 @@ from typing import Optional
 from home_builder.errors import ImportPlanError
 from home_builder.imports import MAPS, import_plan
 from home_builder.plan.file import load_plan
-from home_builder.plan.model import Plan
+from home_builder.plan.model import HomePlan
 from planar.config.yaml_table import read_table
 from planar.maps.home_folder import MANIFEST, PLAN
 
 HOMES = Path("homes")
 
 
-def read_source(source: Path, scale: Optional[float] = None) -> Plan:
+def read_source(source: Path, scale: Optional[float] = None) -> HomePlan:
     """Return the plan of a home's folder or plan file, or that of an imported file.
 
     Args:

@@ -11,7 +11,7 @@ from shapely.ops import polylabel
 
 from home_builder.palette import OUTLINE
 from home_builder.plan.geometry import furniture_polygon, room_faces, wall_polygons
-from home_builder.plan.model import Place, Plan
+from home_builder.plan.model import HomePlan, Place
 from planar import FREE, OccupancyGrid, SettingsError
 from planar.geometry.distance_field import distance_field
 
@@ -68,7 +68,7 @@ class StandingRoom:
         return x, y
 
 
-def all_places(plan: Plan, grid: OccupancyGrid) -> Dict[str, Place]:
+def all_places(plan: HomePlan, grid: OccupancyGrid) -> Dict[str, Place]:
     """Return the places of a home by name: of the plan, of rooms and furniture, pick-up and drop-off.
 
     Args:
@@ -99,7 +99,7 @@ def all_places(plan: Plan, grid: OccupancyGrid) -> Dict[str, Place]:
     return places
 
 
-def _room_places(plan: Plan, standing: StandingRoom) -> List[Place]:
+def _room_places(plan: HomePlan, standing: StandingRoom) -> List[Place]:
     places = []
     for face in room_faces(plan):
         polygon = shapely.transform(face.polygon, lambda points: points - plan.start)
@@ -109,7 +109,7 @@ def _room_places(plan: Plan, standing: StandingRoom) -> List[Place]:
     return places
 
 
-def _furniture_places(plan: Plan, standing: StandingRoom) -> List[Place]:
+def _furniture_places(plan: HomePlan, standing: StandingRoom) -> List[Place]:
     """Places in front of furniture: of each piece with a name, and of each kind that occurs once."""
     kinds = [piece.kind for piece in plan.furniture]
     places = []
@@ -149,11 +149,11 @@ def _ends(standing: StandingRoom, rooms: List[Place]) -> List[Tuple[float, float
     return [tuple(first.tolist()), tuple(last.tolist())]
 
 
-def free_start(plan: Plan) -> Tuple[float, float]:
+def free_start(plan: HomePlan) -> Tuple[float, float]:
     """Return where a robot can start: the middle of the largest room, or of what the walls surround [m].
 
     Args:
-        plan: Plan without a start.
+        plan: HomePlan without a start.
 
     Raises:
         SettingsError: There is no room for the robot.

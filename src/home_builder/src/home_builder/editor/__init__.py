@@ -1,1 +1,1 @@
-"""The editor of plans in the browser: a page of its own with the drawing, checks by the Python core."""
+"""The editor of plans in the browser: a page with the drawing, and checks by the Python core."""

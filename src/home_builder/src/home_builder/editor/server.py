@@ -2,7 +2,6 @@
 
 import signal
 import threading
-from functools import partial
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
@@ -10,7 +9,7 @@ from typing import Any, Callable, Dict, Optional, Tuple
 
 from cockpit.access import OK, AccessPolicy
 from home_builder.editor.session import EditorSession, as_json
-from home_builder.errors import ImportPlanError
+from home_builder.errors import EditorError
 from planar import PlanarError
 
 STATIC = Path(__file__).parent / "static"
@@ -40,21 +39,25 @@ class EditorServer:
         url: URL of the page, with its token.
 
     Raises:
-        ImportPlanError: The port is in use or not available.
+        EditorError: The port is in use or not available.
     """
 
     def __init__(self, session: EditorSession, address: str = "127.0.0.1", port: int = 0):
         self._session = session
+        self._access: Optional[AccessPolicy] = None
         try:
-            self._server = ThreadingHTTPServer((address, port), _Handler)
+            self._server = ThreadingHTTPServer((address, port), self._handle)
         except (OSError, OverflowError) as error:
             reason = getattr(error, "strerror", None) or str(error)
-            raise ImportPlanError(f"--web-port: {address}:{port} cannot be served ({reason})") from None
+            raise EditorError(f"--web-port: {address}:{port} cannot be served ({reason})") from None
         self._server.daemon_threads = True
         port = self._server.server_address[1]
-        access = AccessPolicy(port, (address,))
-        self._server.RequestHandlerClass = partial(_Handler, session=session, access=access)  # type: ignore
-        self.url = f"http://{address}:{port}/?token={access.token}"
+        self._access = AccessPolicy(port, (address,))
+        self.url = f"http://{address}:{port}/?token={self._access.token}"
+
+    def _handle(self, *request: Any) -> BaseHTTPRequestHandler:
+        assert self._access is not None  # requests come only once the server serves
+        return _Handler(*request, session=self._session, access=self._access)
 
     def serve(self) -> None:
         """Serve until ``close`` is called from another thread."""
@@ -172,9 +175,9 @@ def address_and_port(text: str) -> Tuple[str, int]:
     """Return address and port of ``[ADDRESS:]PORT``.
 
     Raises:
-        ImportPlanError: The text is no port.
+        EditorError: The text is no port.
     """
     address, _, port = text.rpartition(":")
     if not port.isascii() or not port.isdigit() or int(port) > 65535:
-        raise ImportPlanError(f"--web-port: expected [ADDRESS:]PORT, got {text}")
+        raise EditorError(f"--web-port: expected [ADDRESS:]PORT, got {text}")
     return address.strip("[]") or "127.0.0.1", int(port)

@@ -7,13 +7,14 @@ import threading
 from pathlib import Path
 from typing import Any, Dict, List, Optional
 
+from home_builder.errors import EditorError
 from home_builder.folder import build_home
 from home_builder.palette import KINDS
 from home_builder.plan.checks import problems_of
 from home_builder.plan.file import load_plan, parse_plan, plan_entries, plan_text
 from home_builder.plan.geometry import corners_of, room_faces
-from home_builder.plan.model import Plan
-from planar import PlanarError, write_atomically
+from home_builder.plan.model import HomePlan
+from planar import write_atomically
 from planar.errors import FileWriteError
 from planar.maps.home_folder import PLAN
 
@@ -27,18 +28,18 @@ class EditorSession:
 
     Args:
         folder: Folder of the home; it is created.
-        plan: Plan to begin with; None: that of the folder, or an empty one.
+        plan: HomePlan to begin with; None: that of the folder, or an empty one.
 
     Raises:
         PlanarError: The plan of the folder cannot be read, or nothing can be written there.
     """
 
-    def __init__(self, folder: Path, plan: Optional[Plan] = None):
+    def __init__(self, folder: Path, plan: Optional[HomePlan] = None):
         self.folder = folder
         self._lock = threading.Lock()
         self._trial: Optional[subprocess.Popen] = None
         if plan is None:
-            plan = load_plan(folder / PLAN) if (folder / PLAN).is_file() else Plan(folder.name)
+            plan = load_plan(folder / PLAN) if (folder / PLAN).is_file() else HomePlan(folder.name)
         try:
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
@@ -92,7 +93,7 @@ class EditorSession:
         self.build()
         with self._lock:
             if self._trial is not None:
-                raise PlanarError("the mission runs already")
+                raise EditorError("the mission runs already")
             self._trial = trial = subprocess.Popen(
                 [sys.executable, *TRIAL, str(self.folder)],
                 stdout=subprocess.PIPE,
@@ -119,7 +120,7 @@ class EditorSession:
         write_atomically(self.folder / PLAN, plan_text(self._plan).encode("utf-8"))
 
 
-def _judged(plan: Plan) -> Dict[str, Any]:
+def _judged(plan: HomePlan) -> Dict[str, Any]:
     problems: List[Dict[str, Any]] = [
         {"text": each.text, "x": each.x, "y": each.y, "is_error": each.is_error} for each in problems_of(plan)
     ]

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Callable, Optional
 
 from home_builder.errors import ImportPlanError
-from home_builder.plan.model import Plan
+from home_builder.plan.model import HomePlan
 from planar.files.reading import exists
 
 PICTURES = (".png", ".jpg", ".jpeg", ".bmp", ".gif", ".tif", ".tiff", ".pgm", ".webp")
@@ -15,7 +15,7 @@ DRAWINGS = (".dxf", ".ifc")
 SUFFIXES = (*MAPS, *PICTURES, *WORLDS, *DRAWINGS)
 
 
-def import_plan(path: Path, scale: Optional[float] = None) -> Plan:
+def import_plan(path: Path, scale: Optional[float] = None) -> HomePlan:
     """Make a plan of a file; its suffix names the kind.
 
     Args:
@@ -46,7 +46,7 @@ def import_plan(path: Path, scale: Optional[float] = None) -> Plan:
     return _importer(*importers[suffix])(path)
 
 
-def _importer(module: str, name: str) -> Callable[..., Plan]:
+def _importer(module: str, name: str) -> Callable[..., HomePlan]:
     """Import an importer when it is used, since each needs libraries that others do not."""
     try:
         return getattr(importlib.import_module(f"home_builder.imports.{module}"), name)

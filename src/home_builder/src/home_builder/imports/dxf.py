@@ -12,7 +12,7 @@ from shapely.geometry import LineString, MultiLineString
 
 from home_builder.errors import ImportPlanError
 from home_builder.imports.joints import join_walls, rounded
-from home_builder.plan.model import DOOR, WINDOW, Plan, Point, Wall
+from home_builder.plan.model import DOOR, WINDOW, HomePlan, Point, Wall
 from home_builder.standing import free_start
 from planar import SettingsError
 
@@ -30,7 +30,7 @@ Segment = Tuple[Point, Point]
 Interval = Tuple[float, float]
 
 
-def import_dxf(path: Path, scale: Optional[float] = None) -> Plan:
+def import_dxf(path: Path, scale: Optional[float] = None) -> HomePlan:
     """Make a plan of a DXF drawing.
 
     Args:
@@ -56,9 +56,9 @@ def import_dxf(path: Path, scale: Optional[float] = None) -> Plan:
         raise ImportPlanError(
             f"{path}: no walls were found; they are pairs of parallel lines on a layer named wall"
         )
-    plan = Plan(path.stem, joined)
+    plan = HomePlan(path.stem, joined)
     try:
-        return Plan(path.stem, joined, start=free_start(plan))
+        return HomePlan(path.stem, joined, start=free_start(plan))
     except SettingsError as error:
         raise ImportPlanError(
             f"{path}: {error}; with the unit of {factor:g} m; --scale sets another"

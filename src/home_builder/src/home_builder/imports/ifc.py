@@ -16,7 +16,7 @@ from shapely.geometry import MultiPoint, Polygon
 from home_builder.errors import ImportPlanError
 from home_builder.imports.joints import join_walls, rounded
 from home_builder.imports.outlines import piece_of
-from home_builder.plan.model import DOOR, WINDOW, Furniture, Opening, Plan, Room, Wall
+from home_builder.plan.model import DOOR, WINDOW, FurniturePiece, HomePlan, Opening, Room, Wall
 from home_builder.standing import free_start
 from planar import SettingsError
 
@@ -53,7 +53,7 @@ class Solid:
         return float(self.points[:, 2].min()), float(self.points[:, 2].max())
 
 
-def import_ifc(path: Path) -> Plan:
+def import_ifc(path: Path) -> HomePlan:
     """Make a plan of the lowest floor of an IFC model that has most of the walls.
 
     Raises:
@@ -66,7 +66,7 @@ def import_ifc(path: Path) -> Plan:
     solids = {wall.id(): _solid(wall) for wall in walls}
     level = _level([solid for solid in solids.values() if solid is not None])
     found: List[Wall] = []
-    furniture: List[Furniture] = []
+    furniture: List[FurniturePiece] = []
     for element in walls:
         solid = solids[element.id()]
         if solid is None:
@@ -80,7 +80,7 @@ def import_ifc(path: Path) -> Plan:
         raise ImportPlanError(f"{path}: no walls with a geometry were found in this IFC model")
     furniture += _furniture(model, level)
     joined = _joined(found)
-    plan = Plan(path.stem, joined, tuple(furniture), tuple(_rooms(model, floor)))
+    plan = HomePlan(path.stem, joined, tuple(furniture), tuple(_rooms(model, floor)))
     try:
         return replace(plan, start=free_start(plan))
     except SettingsError as error:
@@ -191,7 +191,7 @@ def _joined(walls: List[Wall]) -> Tuple[Wall, ...]:
     return tuple(map(rounded, join_walls(walls, SLACK, lambda start, end, thickness: "")))
 
 
-def _furniture(model: Any, level: float) -> Iterator[Furniture]:
+def _furniture(model: Any, level: float) -> Iterator[FurniturePiece]:
     for element in model.by_type(FURNITURE_TYPE):
         solid = _solid(element)
         if solid is None or not level - 0.1 <= solid.heights[0] < level + ROBOT_HEIGHT:

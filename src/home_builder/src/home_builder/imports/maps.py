@@ -11,7 +11,7 @@ from home_builder.errors import ImportPlanError
 from home_builder.imports.joints import join_walls, rounded
 from home_builder.imports.outlines import furniture_from_cells
 from home_builder.imports.wall_strips import SolidCells, straight_walls
-from home_builder.plan.model import DOOR, Plan, Point
+from home_builder.plan.model import DOOR, HomePlan, Point
 from planar import FREE, OCCUPIED, UNKNOWN, OccupancyGrid, load_map
 from planar.geometry.distance_field import distance_field
 
@@ -24,7 +24,7 @@ FREE_SHARE = 0.7
 CELL = 0.05
 
 
-def import_map(path: Path) -> Plan:
+def import_map(path: Path) -> HomePlan:
     """Make a plan of a map.
 
     Args:
@@ -40,7 +40,7 @@ def import_map(path: Path) -> Plan:
     return plan_of_map(load_map(path), path.stem)
 
 
-def plan_of_map(grid: OccupancyGrid, name: str) -> Plan:
+def plan_of_map(grid: OccupancyGrid, name: str) -> HomePlan:
     """Make a plan of an occupancy grid; see ``import_map``."""
     occupied = grid.cells == OCCUPIED
     if not occupied.any():
@@ -54,7 +54,7 @@ def plan_of_map(grid: OccupancyGrid, name: str) -> Plan:
     strips, rest = straight_walls(solid)
     walls = join_walls(strips, grid.resolution, _free_gaps(grid, corner))
     furniture = furniture_from_cells(SolidCells(rest & occupied, grid.resolution, corner))
-    return Plan(name, tuple(map(rounded, walls)), tuple(furniture), start=start_of(grid, corner, name))
+    return HomePlan(name, tuple(map(rounded, walls)), tuple(furniture), start=start_of(grid, corner, name))
 
 
 def _aligned(grid: OccupancyGrid) -> Point:

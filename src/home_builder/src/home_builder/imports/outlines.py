@@ -1,4 +1,4 @@
-"""Furniture from solid cells that are no walls: boxes and outlines."""
+"""FurniturePiece from solid cells that are no walls: boxes and outlines."""
 
 import math
 from typing import Iterator, List
@@ -11,21 +11,21 @@ from shapely.geometry import Polygon, box
 
 from home_builder.imports.wall_strips import SolidCells
 from home_builder.palette import OUTLINE
-from home_builder.plan.model import Furniture
+from home_builder.plan.model import FurniturePiece
 
 # Share of its smallest rectangle that a box fills; height of furniture on a map [m].
 BOX_FILL, HEIGHT = 0.9, 0.8
 DIGITS = 4
 
 
-def furniture_from_cells(solid: SolidCells) -> List[Furniture]:
+def furniture_from_cells(solid: SolidCells) -> List[FurniturePiece]:
     """Return a piece of furniture for each connected part of solid cells.
 
     Args:
         solid: Cells that are solid but in no wall.
     """
     labels, _ = label(solid.cells, structure=np.ones((3, 3)))
-    pieces: List[Furniture] = []
+    pieces: List[FurniturePiece] = []
     for number, window in enumerate(find_objects(labels), 1):
         part = labels[window] == number
         corner = np.array([window[1].start, window[0].start]) * solid.resolution + solid.corner
@@ -66,7 +66,7 @@ def without_holes(polygon) -> Iterator[Polygon]:
             yield from without_holes(polygon.intersection(half))
 
 
-def piece_of(polygon: Polygon, height: float = HEIGHT, name: str = "") -> Furniture:
+def piece_of(polygon: Polygon, height: float = HEIGHT, name: str = "") -> FurniturePiece:
     """Return a polygon as a piece of furniture: a box if it is about a rectangle, else an outline."""
     rectangle = shapely.minimum_rotated_rectangle(polygon)
     if isinstance(rectangle, Polygon) and polygon.area >= BOX_FILL * rectangle.area:
@@ -77,14 +77,14 @@ def piece_of(polygon: Polygon, height: float = HEIGHT, name: str = "") -> Furnit
     low_x, low_y, high_x, high_y = polygon.bounds
     size = (round(high_x - low_x, DIGITS), round(high_y - low_y, DIGITS), height)
     outline = tuple((round(a, DIGITS), round(b, DIGITS)) for a, b in corners.tolist())
-    return Furniture(OUTLINE, x, y, 0.0, size, name, outline)
+    return FurniturePiece(OUTLINE, x, y, 0.0, size, name, outline)
 
 
-def _box(rectangle: Polygon, height: float, name: str) -> Furniture:
+def _box(rectangle: Polygon, height: float, name: str) -> FurniturePiece:
     corners = np.asarray(rectangle.exterior.coords)
     sides = np.diff(corners[:3], axis=0)
     width, depth = np.hypot(*sides.T).tolist()
     yaw = math.atan2(sides[0][1], sides[0][0])
     x, y = corners[:4].mean(axis=0).tolist()
     size = (round(width, DIGITS), round(depth, DIGITS), height)
-    return Furniture("box", round(x, DIGITS), round(y, DIGITS), round(yaw, 5), size, name)
+    return FurniturePiece("box", round(x, DIGITS), round(y, DIGITS), round(yaw, 5), size, name)

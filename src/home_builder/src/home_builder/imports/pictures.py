@@ -12,7 +12,7 @@ from home_builder.imports.joints import join_walls, rounded
 from home_builder.imports.maps import start_of
 from home_builder.imports.outlines import furniture_from_cells
 from home_builder.imports.wall_strips import SolidCells, straight_walls
-from home_builder.plan.model import DOOR, WINDOW, Plan, Point
+from home_builder.plan.model import DOOR, WINDOW, HomePlan, Point
 from planar import FREE, OCCUPIED, UNKNOWN, OccupancyGrid, Pose2
 from planar.files.reading import read_bytes
 
@@ -30,7 +30,7 @@ MOST_DARK = 0.6
 WINDOW_SHARE = 0.8
 
 
-def import_picture(path: Path, scale: float) -> Plan:
+def import_picture(path: Path, scale: float) -> HomePlan:
     """Make a plan of a picture in which walls are darker than the floor.
 
     Args:
@@ -62,7 +62,7 @@ def import_picture(path: Path, scale: float) -> Plan:
         if piece.size[0] * piece.size[1] >= MIN_PIECE
     ]
     start = start_of(_grid(walls_cells, cell), (0.0, 0.0), str(path))
-    return Plan(path.stem, tuple(map(rounded, walls)), tuple(furniture), start=start)
+    return HomePlan(path.stem, tuple(map(rounded, walls)), tuple(furniture), start=start)
 
 
 def _shades(path: Path) -> np.ndarray:

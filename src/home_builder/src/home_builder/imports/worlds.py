@@ -12,7 +12,7 @@ from shapely.geometry import MultiPoint, Polygon
 from home_builder.errors import ImportPlanError
 from home_builder.imports.joints import join_walls, rounded
 from home_builder.imports.outlines import piece_of
-from home_builder.plan.model import Furniture, Plan, Wall
+from home_builder.plan.model import FurniturePiece, HomePlan, Wall
 from sim_bridge import load_world
 from sim_bridge.geometry.shapes import Box, Plane
 from sim_bridge.geometry.slicing import slice_shape
@@ -28,7 +28,7 @@ SLACK = 0.02
 MAX_PIECES, ROUNDING = 2000, 0.01
 
 
-def import_world(path: Path) -> Plan:
+def import_world(path: Path) -> HomePlan:
     """Make a plan of an SDF world: upright boxes become walls, other solids furniture.
 
     Args:
@@ -43,7 +43,7 @@ def import_world(path: Path) -> Plan:
     """
     world = load_world(path)
     walls: List[Wall] = []
-    furniture: List[Furniture] = []
+    furniture: List[FurniturePiece] = []
     for body in world.bodies:
         for part in body.collisions:
             pose = body.pose_in_world @ part.pose_in_body
@@ -59,7 +59,7 @@ def import_world(path: Path) -> Plan:
     if len(furniture) > MAX_PIECES:
         raise ImportPlanError(f"{path}: {len(furniture)} solids are more than {MAX_PIECES}")
     joined = join_walls(walls, SLACK)
-    return Plan(path.stem, tuple(map(rounded, joined)), tuple(_with_single_names(furniture)))
+    return HomePlan(path.stem, tuple(map(rounded, joined)), tuple(_with_single_names(furniture)))
 
 
 def _wall(part: Collision, pose: np.ndarray) -> Optional[Wall]:
@@ -79,7 +79,7 @@ def _wall(part: Collision, pose: np.ndarray) -> Optional[Wall]:
     return Wall((x - half_x, y - half_y), (x + half_x, y + half_y), depth, bottom + height)
 
 
-def _pieces(part: Collision, pose: np.ndarray, name: str) -> List[Furniture]:
+def _pieces(part: Collision, pose: np.ndarray, name: str) -> List[FurniturePiece]:
     """Return the convex outlines of a solid at the height of a laser as furniture."""
     pieces = []
     for outline in slice_shape(part.shape, pose, CUT - 0.005, CUT + 0.005):
@@ -89,7 +89,7 @@ def _pieces(part: Collision, pose: np.ndarray, name: str) -> List[Furniture]:
     return pieces
 
 
-def _with_single_names(furniture: List[Furniture]) -> List[Furniture]:
+def _with_single_names(furniture: List[FurniturePiece]) -> List[FurniturePiece]:
     """Keep the names that one piece only has."""
     counts = Counter(piece.name for piece in furniture)
     return [piece if counts[piece.name] == 1 else replace(piece, name="") for piece in furniture]

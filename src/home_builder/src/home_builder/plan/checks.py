@@ -16,7 +16,7 @@ from home_builder.plan.geometry import (
     solid_polygons,
     wall_line,
 )
-from home_builder.plan.model import Plan, Wall
+from home_builder.plan.model import HomePlan, Wall
 
 # Shortest wall [m].
 MIN_LENGTH = 0.05
@@ -48,7 +48,7 @@ class Problem:
         return f"{self.text} at ({self.x:.2f}, {self.y:.2f})"
 
 
-def problems_of(plan: Plan) -> List[Problem]:
+def problems_of(plan: HomePlan) -> List[Problem]:
     """Return all problems of a plan, errors first."""
     if not plan.walls and not plan.furniture:
         return [Problem("the plan is empty: draw walls, or import a map or a floor plan", *plan.start)]
@@ -57,13 +57,13 @@ def problems_of(plan: Plan) -> List[Problem]:
     return sorted(problems, key=lambda problem: not problem.is_error)
 
 
-def _wall_problems(plan: Plan) -> Iterator[Problem]:
+def _wall_problems(plan: HomePlan) -> Iterator[Problem]:
     for number, wall in enumerate(plan.walls, 1):
         if wall.length < MIN_LENGTH:
             yield Problem(f"wall {number} is shorter than {MIN_LENGTH:g} m", *wall.start)
 
 
-def _opening_problems(plan: Plan) -> Iterator[Problem]:
+def _opening_problems(plan: HomePlan) -> Iterator[Problem]:
     for number, wall in enumerate(plan.walls, 1):
         for opening in wall.openings:
             where, name = wall.point_at(opening.at), f"a {opening.kind} in wall {number}"
@@ -87,7 +87,7 @@ def _overlaps(number: int, wall: Wall) -> Iterator[Problem]:
             yield Problem(f"two openings of wall {number} overlap", *wall.point_at(other.at))
 
 
-def _crossings(plan: Plan) -> Iterator[Problem]:
+def _crossings(plan: HomePlan) -> Iterator[Problem]:
     """Walls whose centre lines cross; one that ends on another wall is a junction."""
     lines = [wall_line(wall) for wall in plan.walls]
     if not lines:
@@ -105,7 +105,7 @@ def _crossings(plan: Plan) -> Iterator[Problem]:
             yield Problem(f"walls {one + 1} and {other + 1} cross", where.x, where.y, is_error=False)
 
 
-def _room_problems(plan: Plan) -> Iterator[Problem]:
+def _room_problems(plan: HomePlan) -> Iterator[Problem]:
     faces = room_faces(plan)
     doorways = shapely.STRtree(doorway_polygons(plan.walls))
     reach = max((wall.thickness for wall in plan.walls), default=0.0)
@@ -119,7 +119,7 @@ def _room_problems(plan: Plan) -> Iterator[Problem]:
             yield Problem(text, room.x, room.y, is_error=False)
 
 
-def _place_problems(plan: Plan) -> Iterator[Problem]:
+def _place_problems(plan: HomePlan) -> Iterator[Problem]:
     solids = [*solid_polygons(plan.walls), *map(furniture_polygon, plan.furniture)]
     tree = shapely.STRtree(solids)
     points = [("the start", *plan.start), *((f"place {each.name}", each.x, each.y) for each in plan.places)]

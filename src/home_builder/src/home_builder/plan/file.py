@@ -14,10 +14,10 @@ from home_builder.plan.model import (
     SPEED,
     WALL_HEIGHT,
     WALL_THICKNESS,
-    Furniture,
+    FurniturePiece,
+    HomePlan,
     Opening,
     Place,
-    Plan,
     Point,
     Room,
     Wall,
@@ -29,7 +29,7 @@ from planar.config.yaml_table import Table, parse_table, read_table
 MAX_COORDINATE, MAX_COUNT = 1000.0, 5000
 
 
-def load_plan(path) -> Plan:
+def load_plan(path) -> HomePlan:
     """Read a plan.
 
     Raises:
@@ -38,17 +38,17 @@ def load_plan(path) -> Plan:
     return _plan(read_table(path))
 
 
-def parse_plan(text: str, source: str = "plan") -> Plan:
+def parse_plan(text: str, source: str = "plan") -> HomePlan:
     """Parse the text of a plan file. Raises SettingsError with line and key; ``source`` names the text."""
     return _plan(parse_table(text, source))
 
 
-def _plan(table: Table) -> Plan:
+def _plan(table: Table) -> HomePlan:
     table.allow_only("name", "start", "walls", "furniture", "rooms", "places", "zones")
     for key in ("walls", "furniture", "rooms", "places", "zones"):
         count = len(table.tables(key))
         table.check(count <= MAX_COUNT, key, f"at most {MAX_COUNT} entries")
-    return Plan(
+    return HomePlan(
         table.text("name", "home"),
         tuple(map(_wall, table.tables("walls"))),
         tuple(map(_furniture, table.tables("furniture"))),
@@ -115,7 +115,7 @@ def _opening(table: Table) -> Opening:
     return opening
 
 
-def _furniture(table: Table) -> Furniture:
+def _furniture(table: Table) -> FurniturePiece:
     table.allow_only("kind", "x", "y", "yaw", "size", "name", "corners")
     kind = table.choice("kind", (*KINDS, OUTLINE))
     width, depth, height = (
@@ -125,7 +125,7 @@ def _furniture(table: Table) -> Furniture:
     )
     is_size = all(0.0 < side <= MAX_COORDINATE for side in (width, depth, height))
     table.check(is_size, "size", "three positive lengths")
-    return Furniture(
+    return FurniturePiece(
         kind,
         _coordinate(table, "x"),
         _coordinate(table, "y"),
@@ -159,7 +159,7 @@ def _zone(table: Table) -> Zone:
     return Zone(table.text("name"), kind, _points(table, "corners"), speed)
 
 
-def plan_entries(plan: Plan) -> Dict[str, Any]:
+def plan_entries(plan: HomePlan) -> Dict[str, Any]:
     """Return a plan as tables, lists and numbers, as in its file and in JSON."""
     return {
         "name": plan.name,
@@ -175,7 +175,7 @@ def plan_entries(plan: Plan) -> Dict[str, Any]:
     }
 
 
-def plan_text(plan: Plan) -> str:
+def plan_text(plan: HomePlan) -> str:
     """Return the text of a plan file; ``parse_plan`` returns an equal plan."""
     entries = plan_entries(plan)
     content = {key: value for key, value in entries.items() if key in ("name", "start")}
@@ -213,7 +213,7 @@ def _wall_entry(wall: Wall) -> Dict[str, Any]:
     return entry
 
 
-def _furniture_entry(piece: Furniture) -> Dict[str, Any]:
+def _furniture_entry(piece: FurniturePiece) -> Dict[str, Any]:
     entry: Dict[str, Any] = {"kind": piece.kind, "x": piece.x, "y": piece.y, "yaw": piece.yaw}
     entry["size"] = list(piece.size)
     if piece.name:

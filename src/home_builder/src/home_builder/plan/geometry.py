@@ -11,7 +11,7 @@ from shapely.geometry import LineString, MultiPolygon, Polygon
 from shapely.geometry import Point as ShapelyPoint
 
 from home_builder.palette import OUTLINE
-from home_builder.plan.model import DOOR, Furniture, Plan, Point, Wall
+from home_builder.plan.model import DOOR, FurniturePiece, HomePlan, Point, Wall
 
 # Gap between walls that still closes a room [m], and the smallest room [m2].
 CLOSING_GAP, MIN_ROOM_AREA = 0.1, 0.8
@@ -137,7 +137,7 @@ def doorway_polygons(walls: Iterable[Wall]) -> List[Polygon]:
     ]
 
 
-def furniture_polygon(piece: Furniture) -> Polygon:
+def furniture_polygon(piece: FurniturePiece) -> Polygon:
     """Return the footprint of a piece of furniture."""
     width, depth, _ = piece.size
     corners: Sequence[Point] = piece.corners
@@ -148,7 +148,7 @@ def furniture_polygon(piece: Furniture) -> Polygon:
     return affinity.translate(turned, piece.x, piece.y)
 
 
-def room_faces(plan: Plan) -> List[RoomFace]:
+def room_faces(plan: HomePlan) -> List[RoomFace]:
     """Return the rooms that are enclosed, doors being closed, the largest first.
 
     Walls enclose a room; where they have gaps, furniture may close them.
@@ -182,7 +182,7 @@ def _polygons_of(geometry) -> List[Polygon]:
     return list(geometry.geoms) if isinstance(geometry, MultiPolygon) else [geometry]
 
 
-def _named(plan: Plan, faces: Sequence[Polygon]) -> List[RoomFace]:
+def _named(plan: HomePlan, faces: Sequence[Polygon]) -> List[RoomFace]:
     taken = {room.name for room in plan.rooms}
     numbers = (number for number in range(1, len(faces) + len(taken) + 1) if f"room {number}" not in taken)
     names: Dict[int, str] = {}

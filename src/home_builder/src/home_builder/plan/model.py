@@ -80,7 +80,7 @@ class Wall:
 
 
 @dataclass(frozen=True)
-class Furniture:
+class FurniturePiece:
     """A piece of furniture on the floor.
 
     Attributes:
@@ -154,13 +154,13 @@ class Zone:
 
 
 @dataclass(frozen=True)
-class Plan:
+class HomePlan:
     """The plan of a home.
 
     Attributes:
         name: Name of the home.
         walls: Walls.
-        furniture: Furniture.
+        furniture: FurniturePiece.
         rooms: Names of rooms.
         places: Named places in addition to those of rooms and furniture.
         zones: Keep-out and speed zones.
@@ -169,7 +169,7 @@ class Plan:
 
     name: str = "home"
     walls: Tuple[Wall, ...] = ()
-    furniture: Tuple[Furniture, ...] = ()
+    furniture: Tuple[FurniturePiece, ...] = ()
     rooms: Tuple[Room, ...] = ()
     places: Tuple[Place, ...] = ()
     zones: Tuple[Zone, ...] = ()
