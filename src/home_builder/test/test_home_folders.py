@@ -74,6 +74,20 @@ def test_every_kind_of_furniture_is_seen_by_a_laser(kind, tmp_path):
     assert OCCUPIED in (grid.value_at(*corner), grid.value_at(*edge))
 
 
+def test_the_inside_of_an_outline_is_solid(tmp_path):
+    corners = ((-1.0, -1.0), (1.0, -1.0), (1.0, 0.0), (0.0, 0.0), (0.0, 1.0), (-1.0, 1.0))
+    piece = FurniturePiece("outline", 6.0, 3.0, 0.3, (2.0, 2.0, 0.8), "", corners)
+    build_home(HomePlan(walls=WALLS, furniture=(piece,), start=(2.0, 2.0)), tmp_path / "home")
+    grid = load_map(tmp_path / "home/home.yaml")
+    cos, sin = math.cos(0.3), math.sin(0.3)
+
+    def at(x, y):
+        return grid.value_at(4.0 + x * cos - y * sin, 1.0 + x * sin + y * cos)
+
+    assert {at(-0.5, -0.5), at(0.5, -0.5), at(-0.5, 0.5)} == {OCCUPIED}
+    assert at(0.5, 0.5) == FREE
+
+
 @pytest.mark.parametrize(
     ("part", "complaint"),
     [
