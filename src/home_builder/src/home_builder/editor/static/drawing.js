@@ -4,14 +4,17 @@
 const SVG = "http://www.w3.org/2000/svg";
 const svg = document.getElementById("drawing");
 const view = { x: 4, y: 3, scale: 60 };  // middle of the drawing [m], pixels per metre
+let box = svg.getBoundingClientRect();  // measured once a drawing, as each measurement lays out the page
+
+function measure() {
+  box = svg.getBoundingClientRect();
+}
 
 function toPage(x, y) {
-  const box = svg.getBoundingClientRect();
   return [box.width / 2 + (x - view.x) * view.scale, box.height / 2 - (y - view.y) * view.scale];
 }
 
 function toPlan(pageX, pageY) {
-  const box = svg.getBoundingClientRect();
   return [
     view.x + (pageX - box.left - box.width / 2) / view.scale,
     view.y - (pageY - box.top - box.height / 2) / view.scale,
@@ -59,7 +62,6 @@ function furnitureCorners(piece) {
 }
 
 function drawGrid() {
-  const box = svg.getBoundingClientRect();
   const [left, top] = toPlan(box.left, box.top), [right, bottom] = toPlan(box.right, box.bottom);
   const step = view.scale > 35 ? 0.5 : view.scale > 8 ? 1 : 5;
   for (let x = Math.ceil(left / step) * step; x < right; x += step) {

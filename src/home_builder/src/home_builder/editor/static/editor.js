@@ -238,6 +238,7 @@ function finish() {
 // -- drawing and panels ------------------------------------------------------------------------------------------------
 
 function draw() {
+  measure();
   svg.replaceChildren();
   drawTemplate(template);
   drawGrid();
@@ -311,7 +312,7 @@ function fit() {
   const all = [plan.start, ...plan.walls.flatMap(wall => [wall.start, wall.end]), ...plan.furniture.map(piece => [piece.x, piece.y])];
   const xs = all.map(p => p[0]), ys = all.map(p => p[1]);
   const low = [Math.min(...xs), Math.min(...ys)], high = [Math.max(...xs), Math.max(...ys)];
-  const box = svg.getBoundingClientRect();
+  measure();
   view.x = (low[0] + high[0]) / 2;
   view.y = (low[1] + high[1]) / 2;
   view.scale = Math.min(80, box.width / (high[0] - low[0] + 2), box.height / (high[1] - low[1] + 2));
