@@ -30,6 +30,7 @@ sys.path[:0] = [str(path) for path in ROOT.glob("src/*/src")] + [str(ROOT / "tes
 
 from browser import Browser, Tab  # noqa: E402
 from docking_animation import save_docking  # noqa: E402
+from editor_animation import save_editor  # noqa: E402
 
 from run_report.picture import save_animation  # noqa: E402
 
@@ -76,6 +77,11 @@ def take_report(path: Path, _logs: Optional[Path]) -> None:
 def take_docking(path: Path, _logs: Optional[Path]) -> None:
     """Take the animation of a docking, or a picture of it."""
     save_docking(path)
+
+
+def take_editor(path: Path, _logs: Optional[Path]) -> None:
+    """A home drawn in the editor, and its mission."""
+    save_editor(path, photograph)
 
 
 def take_cockpit(path: Path, _logs: Optional[Path]) -> None:
@@ -171,6 +177,7 @@ TAKERS: Dict[str, Callable[[Path, Optional[Path]], None]] = {
     "run.gif": take_run,
     "report.png": take_report,
     "cockpit.gif": take_cockpit,
+    "editor.gif": take_editor,
     "docking.gif": take_docking,
     "docking.png": take_docking,
     "cockpit_tools.png": take_tools,

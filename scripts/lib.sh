@@ -169,16 +169,23 @@ is_asked_for_web() { # ARGUMENT...
     is_among --web "$@" || is_among --web-port "${@%%=*}"
 }
 
+is_drawing_given() { # ARGUMENT...: a DXF or IFC file
+    local argument
+    for argument; do [[ ${argument,,} != *.dxf && ${argument,,} != *.ifc ]] || return 0; done
+    return 1
+}
+
 run_command() { # PACKAGE NAME ARGUMENT...: a command, after the set-up it needs
     answer_help "$@"
     local extras=()
     if is_among --rviz "$@" && [[ -n ${DISPLAY:-} ]]; then extras=(rviz); fi
-    if is_asked_for_web "$@" || [[ $2 == cockpit ]]; then extras+=(cockpit); fi
     case $1 in
         laboratory) extras+=(laboratory) ;;
         home_service_gym) extras+=(gymnasium) ;;
         service) extras+=(service) ;;
+        home_builder) ! is_drawing_given "$@" || extras+=(drawings) ;;
     esac
+    if [[ $2 == cockpit ]] || { [[ $1 != home_builder ]] && is_asked_for_web "$@"; }; then extras+=(cockpit); fi
     set_up "${extras[@]}"
     enter_workspace
     exec python3 -m "$@"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Usage: ./scripts/setup.sh [--dev] [--projects] [--rviz] [--web] [--laboratory] [--gymnasium] [--service]
-#        [--packages]
+#        [--drawings] [--packages]
 #
 # Install what the workspace lacks: Debian packages (as root or with sudo), Python packages in .venv, the catkin build in
 # build/ and devel/. The other scripts do this when they start. Does nothing if everything is up to date, and continues
@@ -13,6 +13,7 @@
 #   --laboratory also for evaluate.sh: Dask, statsmodels, pyarrow, Optuna
 #   --gymnasium  also for the environments: gymnasium
 #   --service    also for service.sh: FastAPI, uvicorn, croniter
+#   --drawings   also for DXF and IFC files in build_home.sh: ezdxf, ifcopenshell
 #   --packages   only the Debian and Python packages, for example for a cached layer of an image
 #   --help       this text
 
@@ -29,13 +30,13 @@ scripts=$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")
 . "$scripts/setup/workspace.sh"
 
 readonly logs=$root/logs/setup
-readonly development=(dev cockpit laboratory gymnasium service fuzzing) # the extras that all tests need
+readonly development=(dev cockpit laboratory gymnasium service fuzzing drawings) # the extras that all tests need
 packages_only=
 failure=
 outdated= # parts that stay in use although their sources have changed
 retry= # also build sources that have failed before
 
-set_up() { # EXTRA...: brings the workspace up to date; extras: dev, projects, opencv, rviz, cockpit, laboratory, gymnasium, service, fuzzing
+set_up() { # EXTRA...: brings the workspace up to date; extras: dev, projects, opencv, rviz, cockpit, laboratory, gymnasium, service, fuzzing, drawings
     look_for_missing "$@"
     if [[ -n $packages$requirements$build$kernels ]]; then
         check_place
@@ -159,6 +160,7 @@ main() {
             --laboratory) extras+=(laboratory) ;;
             --gymnasium) extras+=(gymnasium) ;;
             --service) extras+=(service) ;;
+            --drawings) extras+=(drawings) ;;
             --packages) packages_only=yes ;;
             --help | -h)
                 usage

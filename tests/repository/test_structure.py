@@ -19,6 +19,7 @@ LAYERS = (
     {"sim_bridge", "map_lite", "amcl_lite", "slam_lite", "move_base_lite", "explorer_lite"}
     | {"pick_objects", "add_markers", "follow_me", "teleop_lite", "auto_docking_lite"},
     {"cockpit"},
+    {"home_builder"},
     {"evaluation"},
     {"headless_mission"},
     {"service"},

@@ -19,6 +19,7 @@ TAIL_LINES = 60
 BROWSERS, PAGE = ("chromium", "chromium-browser", "google-chrome"), ("viser",)
 NEEDS = {
     "tests/cockpit": (BROWSERS, PAGE),
+    "tests/home_builder": (BROWSERS,),
     "tests/two_hosts": (("ip",),),
     "tests/two_hosts/cockpit_alone.test": (BROWSERS, PAGE),
     "tests/two_hosts/laboratory_two_hosts.test": (("distributed",),),

@@ -6,7 +6,9 @@ from pathlib import Path
 from typing import Any, Dict, Mapping, Optional, Tuple
 
 from planar import Pose2
+from planar.errors import SettingsError
 from planar.geometry.pose import pose_of_text
+from planar.maps.home_folder import HomeFolder, load_home
 from planar.maps.places import load_places
 from supervision.command_line import number, option, seconds, seed
 from supervision.view_options import ViewOptions
@@ -47,6 +49,28 @@ class WorldOptions:
         type=number,
         metavar=("X", "Y", "YAW"),
     )
+
+    home: Optional[Path] = option(
+        None,
+        "folder of a home, made by build_home.sh: its world, map, zones and mission",
+        type=Path,
+        metavar="FOLDER",
+    )
+
+    def __post_init__(self) -> None:
+        """Take the parts of the home that were not given. Raises SettingsError."""
+        if self.home is not None:
+            self._take_parts(load_home(self.home))
+
+    def _take_parts(self, home: HomeFolder) -> None:
+        defaults = {item.name: item.default for item in fields(self)}
+        if self.world not in (defaults["world"], home.world, home.world.resolve()):
+            raise SettingsError(
+                f"--world: {self.world} does not belong to the home {self.home}; leave one of them out"
+            )
+        for name in ("world", "map", "zones", "mission"):
+            if name in defaults and getattr(self, name) == defaults[name]:
+                object.__setattr__(self, name, getattr(home, name))
 
     def dock_in_world(self) -> Optional[Pose2]:
         """Return the pose of the dock; None if there is none.
