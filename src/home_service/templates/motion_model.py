@@ -4,6 +4,7 @@ import numpy as np
 
 from amcl_lite import LocalizerSettings
 from planar import Pose2
+from planar.geometry.pose import cos_sin
 
 # Standard deviations of odometry: translation and rotation per metre, and per radian.
 PER_METRE, PER_RADIAN = (0.1, 0.05), (0.02, 0.1)
@@ -23,5 +24,5 @@ class CLASS:
         distance, turn = np.hypot(step.x, step.y), abs(step.yaw)
         translation, rotation = distance * np.array(PER_METRE) + turn * np.array(PER_RADIAN)
         x, y, yaw = (step.as_array() + rng.normal(0.0, (translation, translation, rotation), poses.shape)).T
-        cos, sin = np.cos(poses[:, 2]), np.sin(poses[:, 2])
+        cos, sin = cos_sin(poses[:, 2])
         return poses + np.column_stack((cos * x - sin * y, sin * x + cos * y, yaw))

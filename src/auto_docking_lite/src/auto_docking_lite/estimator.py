@@ -13,6 +13,7 @@ from auto_docking_lite.config import DockingSettings
 from auto_docking_lite.kernels import log_likelihoods
 from planar import Pose2, wrap
 from planar.geometry.dock_field import CENTRE, FAR_CENTRE, LEFT, NEAR, RIGHT
+from planar.geometry.pose import cos_sin
 
 Signals = Tuple[int, int, int]
 PARTICLES, FIRST_PARTICLES = 400, 2000
@@ -84,7 +85,7 @@ class DockEstimator:
         if self._particles is None:
             return None
         x, y, yaw = self._particles.T
-        sine, cosine = float(np.sin(yaw).mean()), float(np.cos(yaw).mean())
+        cosine, sine = (float(each.mean()) for each in cos_sin(yaw))
         mean = Pose2(float(x.mean()), float(y.mean()), math.atan2(sine, cosine))
         length = min(max(math.hypot(sine, cosine), 1e-9), 1.0)
         return DockEstimate(mean, float(math.hypot(x.std(), y.std())), math.sqrt(-2.0 * math.log(length)))

@@ -74,5 +74,5 @@ def _read_trajectory(path: Path) -> np.ndarray:
     """Stamps and poses (N, 4) of a trajectory in the TUM format."""
     rows = np.loadtxt(path, ndmin=2) if path.exists() else np.empty((0, 8))
     rows = rows.reshape(-1, 8)
-    yaw = 2.0 * np.arctan2(rows[:, 6], rows[:, 7])
+    yaw = 2.0 * np.arctan2(*rows[:, 6:].T.copy())
     return np.column_stack((rows[:, :3], yaw))

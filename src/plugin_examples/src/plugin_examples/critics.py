@@ -14,6 +14,7 @@ from move_base_lite import ControlContext, ControlError, ControllerSettings, Pla
 from move_base_lite.costmap import INSCRIBED
 from planar import Pose2, Twist2
 from planar.config.parameters import POSITIVE, at_least, parameter
+from planar.geometry.pose import cos_sin
 
 # Samples of speed and turn rate, and poses of an arc.
 SPEEDS, TURNS, STEPS = 5, 15, 8
@@ -147,7 +148,7 @@ class Critics:
 
 def _forward_points(arcs: SampledArcs) -> np.ndarray:
     ends = arcs.poses[:, -1]
-    return ends[:, :2] + FORWARD_POINT_DISTANCE * np.column_stack([np.cos(ends[:, 2]), np.sin(ends[:, 2])])
+    return ends[:, :2] + FORWARD_POINT_DISTANCE * np.column_stack(cos_sin(ends[:, 2]))
 
 
 def _distances(points_xy: np.ndarray, path_xy: np.ndarray) -> np.ndarray:

@@ -11,6 +11,7 @@ from amcl_lite import LocalizerSettings
 from amcl_lite.sensor.beams import Beams
 from planar import FREE, OCCUPIED, OccupancyGrid
 from planar.geometry.distance_field import distance_field
+from planar.geometry.pose import cos_sin
 
 # Densities of a hit (at its peak), of a short and of an unexplained reading [1/m].
 HIT, SHORT, UNEXPLAINED = 2.4, 0.17, 0.006
@@ -44,7 +45,7 @@ class ShortReadings:
             Log-likelihood (N,) of each particle.
         """
         ends = beams.ends_xy
-        cos, sin = np.cos(poses[:, 2:]), np.sin(poses[:, 2:])
+        cos, sin = cos_sin(poses[:, 2:])
         x = poses[:, :1] + cos * ends[:, 0] - sin * ends[:, 1]
         y = poses[:, 1:2] + sin * ends[:, 0] + cos * ends[:, 1]
         cells = self._grid.cells_of(np.column_stack((x.ravel(), y.ravel())))

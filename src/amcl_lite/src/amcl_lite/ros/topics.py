@@ -11,6 +11,7 @@ from amcl_lite.localizer import Estimate, Localizer
 from amcl_lite.recovery.quality import MapMismatchMonitor
 from amcl_lite.ros.locked_localizer import LockedLocalizer
 from planar import OccupancyGrid
+from planar.geometry.pose import cos_sin
 from planar_ros.messages.conversion import (
     OccupancyGridArrays,
     PosesMsg,
@@ -104,7 +105,7 @@ class AmclTopics:
         marker.pose.orientation.w = 1.0
         marker.scale.x = 0.1 * MARKER_LENGTH
         heaviest = np.argsort(-weights, kind="stable")[:MARKER_COUNT]
-        tips = poses[:, :2] + MARKER_LENGTH * np.column_stack((np.cos(poses[:, 2]), np.sin(poses[:, 2])))
+        tips = poses[:, :2] + MARKER_LENGTH * np.column_stack(cos_sin(poses[:, 2]))
         for i in heaviest:
             share = weights[i] / weights[heaviest[0]]
             marker.points += [Point(*poses[i, :2], 0.0), Point(*tips[i], 0.0)]

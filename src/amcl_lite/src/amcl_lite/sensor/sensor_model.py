@@ -12,6 +12,7 @@ from amcl_lite.config import LocalizerSettings
 from amcl_lite.sensor.beams import Beams
 from amcl_lite.sensor.likelihood_field import LikelihoodField, fit_at, pose_in_cells
 from planar import OccupancyGrid
+from planar.geometry.pose import cos_sin
 from planar.geometry.ray_casting import cast_rays_from_many
 
 
@@ -53,7 +54,7 @@ def log_beam_model(
 ) -> np.ndarray:
     """Logarithms (N,) of the beam model (table 6.1), with amcl's 1 + sum of cubes for the product."""
     starts = poses.copy()
-    c, s = np.cos(poses[:, 2]), np.sin(poses[:, 2])
+    c, s = cos_sin(poses[:, 2])
     starts[:, 0] += c * beams.start_xy[0] - s * beams.start_xy[1]
     starts[:, 1] += s * beams.start_xy[0] + c * beams.start_xy[1]
     expected = cast_rays_from_many(grid, starts, beams.directions, beams.max_range)

@@ -17,6 +17,19 @@ def wrap(angle):
     return float((angle + math.pi) % (2.0 * math.pi) - math.pi)
 
 
+def cos_sin(angles: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+    """Return the cosines and sines of angles, with the same bits wherever the array is in memory.
+
+    numpy before 2.1 takes a view, such as a column of poses, to overlap with a result that happens to be
+    allocated just behind it, and then uses another implementation, which rounds differently.
+
+    Args:
+        angles: Angles of any shape [rad].
+    """
+    contiguous = np.ascontiguousarray(angles)
+    return np.cos(contiguous), np.sin(contiguous)
+
+
 @dataclass(frozen=True)
 class Pose2:
     """Pose of one frame in another.

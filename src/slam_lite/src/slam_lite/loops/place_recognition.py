@@ -16,6 +16,7 @@ import numpy as np
 from scipy.fft import irfft
 
 from planar import Pose2, wrap
+from planar.geometry.pose import cos_sin
 from slam_lite.graph.pose_graph import relative_pose
 from slam_lite.point_cloud import PointCloud, merge_clouds
 
@@ -337,7 +338,7 @@ def compose_poses(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     Returns:
         (N, 3), poses in the common frame.
     """
-    c, s = np.cos(first[:, 2]), np.sin(first[:, 2])
+    c, s = cos_sin(first[:, 2])
     x = first[:, 0] + c * second[:, 0] - s * second[:, 1]
     y = first[:, 1] + s * second[:, 0] + c * second[:, 1]
     return np.column_stack((x, y, wrap(first[:, 2] + second[:, 2])))
