@@ -91,6 +91,7 @@ class EpisodeMoveBaseClient(EpisodeHooks):
         self._navigation, self._encoding = navigation, encoding
         self.robot: Optional[Pose2] = None
         self._goal: Optional[Pose2] = None
+        self._is_cancelled = False
         self._outcome: Optional[DriveOutcome] = None
 
     def at_tick(self, episode: Episode, step: StepResult) -> None:
@@ -102,12 +103,19 @@ class EpisodeMoveBaseClient(EpisodeHooks):
         if status is not None and self._goal is None:  # else a new goal has replaced the one that ended
             self._outcome = DriveOutcome(status, result.decision.text)
         goal, self._goal = self._goal, None
+        if self._is_cancelled and self._navigation.move_base.is_active:
+            episode.command = self._navigation.move_base.cancel(step.stamp).command
+        self._is_cancelled = False
         if goal is not None:
             self._navigation.move_base.set_goal(goal)
 
     def send(self, goal: Pose2) -> None:
         """Send a goal, which replaces any earlier one."""
         self._goal, self._outcome = self._encoding.pose(goal), None
+
+    def cancel(self) -> None:
+        """Cancel the goal, if there is one."""
+        self._goal, self._outcome, self._is_cancelled = None, None, True
 
     def outcome(self) -> Optional[DriveOutcome]:
         """Return the outcome of the last goal once; None while it is active and afterwards."""

@@ -29,7 +29,7 @@ class ChartLine(NamedTuple):
     rows: np.ndarray
 
 
-def chart(title: str, unit: str, lines: Sequence[ChartLine], end: float) -> str:
+def chart(title: str, unit: str, lines: Sequence[ChartLine], end: float, time_unit: str = "s") -> str:
     """Return a chart over 0..end seconds; empty without data."""
     lines = [line for line in lines if len(line.rows)]
     if not lines or end <= 0.0:
@@ -58,7 +58,7 @@ def chart(title: str, unit: str, lines: Sequence[ChartLine], end: float) -> str:
     return (
         f"<figure><figcaption>{escape(title)} <small>{escape(unit)}</small>{legend}</figcaption>"
         f'<div class="plot">{labels}<svg viewBox="0 0 100 {HEIGHT:g}" preserveAspectRatio="none">'
-        f"{grid}{drawn}</svg>{time_labels(end)}</div></figure>"
+        f"{grid}{drawn}</svg>{time_labels(end, time_unit)}</div></figure>"
     )
 
 
@@ -88,11 +88,11 @@ def timeline(states: Sequence[StateEvent], end: float) -> str:
     )
 
 
-def time_labels(end: float) -> str:
+def time_labels(end: float, unit: str = "s") -> str:
     ticks = [tick for tick in nice_ticks(0.0, end, 6) if tick <= end]
     return "".join(
         f'<span class="x" style="left:{100.0 * tick / end:.2f}%">{tick:g}'
-        f"{' s' if tick == ticks[-1] else ''}</span>"
+        f"{f' {unit}' if tick == ticks[-1] else ''}</span>"
         for tick in ticks
     )
 

@@ -1,5 +1,6 @@
 """An episode: a simulation stepped by control periods, with hooks (dm_control: composer.Environment)."""
 
+import math
 from typing import Callable, Optional, Sequence
 
 from planar import Twist2
@@ -7,6 +8,9 @@ from sim_bridge.faults.injection import FaultInjector
 from sim_bridge.faults.kind import FaultContext
 from sim_bridge.robot import StepResult
 from sim_bridge.simulation import ROBOT_NAME, Simulation
+
+# Simulated time before the end of an idle time in which sensors measure again, each at least once [s].
+LAST_SECONDS = 1.0
 
 
 class EpisodeHooks:
@@ -69,10 +73,39 @@ class Episode:
         step = self.simulation.step(command)
         for hooks in self._hooks:
             hooks.after_step(self, step)
+        self._update_faults(step)
+        return step
+
+    def _update_faults(self, step: StepResult) -> None:
         if self._faults is not None:
             place = FaultContext(self.simulation.scene, ROBOT_NAME, step.base_in_world)
             self._faults.update(step.stamp, place)
-        return step
+
+    def idle(self, until: float) -> bool:
+        """Let time pass without the hooks while the robot stands; all but the last steps are skipped.
+
+        Commands in flight are discarded. With a fault that is active meanwhile, no steps are skipped.
+
+        Args:
+            until: Simulated time to advance to, rounded up to whole control periods [s].
+
+        Returns:
+            Whether time has passed: not if the robot or something else moves.
+        """
+        scene, period = self.simulation.scene, self._steps * self.simulation.step_seconds
+        count = math.ceil((until - scene.stamp) / period - 1e-6) * self._steps
+        if count <= 0 or not self.simulation.park():
+            return False
+        self.command = self._in_flight = None
+        skipped = count - math.ceil(LAST_SECONDS / self.simulation.step_seconds)
+        if skipped > 0 and (self._faults is None or self._faults.are_inactive(scene.stamp, until)):
+            scene.skip(skipped)
+            count -= skipped
+        for _ in range(count):
+            step = self.simulation.step()
+            self._update_faults(step)
+        self.simulation.wake()
+        return True
 
     def advance(self) -> StepResult:
         """Advance by one control period and its tick; return the last simulation step."""

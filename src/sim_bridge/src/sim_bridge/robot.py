@@ -149,6 +149,7 @@ class Robot:
             mounting: Start pose, settings and seed of the new start.
         """
         self._set_rates(mounting.settings)
+        self._streams = mounting.streams
         battery = self.profile.battery
         self._power = PowerSystem(battery, mounting.settings) if battery is not None else None
         self._context = RobotSensorContext(self.vehicle, self._view, self._power, mounting.settings)
@@ -187,6 +188,24 @@ class Robot:
     def halt(self) -> None:
         """Stop at once and discard the command."""
         self._drive.halt()
+
+    def park(self) -> None:
+        """Hold the odometry until ``wake``, while the robot is not moved."""
+        self._odometer.hold(True)
+
+    def wake(self, step: int) -> None:
+        """Undo ``park``; the noise of the sensors starts afresh.
+
+        Args:
+            step: Number of physics steps since the rates were set.
+        """
+        self._odometer.hold(False)
+        self._streams.restart(step)
+
+    @property
+    def power_interval(self) -> int:
+        """Physics steps between two updates of the battery."""
+        return self._power_interval
 
     def switch_motors(self, on: bool) -> None:
         """Switch motor power; without it, or with an empty battery, commands are ignored."""
@@ -252,8 +271,7 @@ class Robot:
         """
         if step % self._interval == 0:
             self._context.record_contacts()
-            if step % self._power_interval == 0 and self._power is not None:
-                self._update_power(self._power, stamp)
+            self.update_power(step, stamp)
         if step < self._next_step:
             return
         self._context.refresh(stamp)
@@ -280,8 +298,16 @@ class Robot:
             power=self._power_reading,
         )
 
-    def _update_power(self, power: PowerSystem, stamp: float) -> None:
-        """Charge or discharge the battery; the motors of a robot with an empty one stop for good."""
+    def update_power(self, step: int, stamp: float) -> None:
+        """Charge or discharge the battery, if due; the motors of a robot with an empty one stop for good.
+
+        Args:
+            step: Number of physics steps since the rates were set.
+            stamp: Simulated time [s].
+        """
+        power = self._power
+        if power is None or step % self._power_interval:
+            return
         self._context.refresh(stamp)
         seconds = self._power_interval / self._settings.physics_rate
         power.update(seconds, self._context.wheels[0], self._context.is_on_dock())

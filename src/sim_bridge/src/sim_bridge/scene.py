@@ -12,6 +12,7 @@ from planar.config.hints import hint
 from sim_bridge.config import SimulationSettings
 from sim_bridge.description import RobotProfile
 from sim_bridge.doors import DOOR_RATE, Doors
+from sim_bridge.driving.parking import Parking
 from sim_bridge.errors import UnknownEntityError, WorldError
 from sim_bridge.geometry.pose3 import from_pose2
 from sim_bridge.people.crowd import WALK_RATE, Crowd
@@ -31,6 +32,8 @@ from sim_bridge.world import Body, Joint, World
 FLOOR_SEARCH = 0.1
 # Distance [m] and number of moves by which a robot that would start inside an obstacle is moved at most.
 MAX_START_SHIFT, MAX_START_MOVES = 0.15, 10
+# Rates at which scripted bodies move [Hz].
+MOVING_RATES = (TRAJECTORY_RATE, WALK_RATE, DOOR_RATE)
 
 
 class Scene:
@@ -94,26 +97,67 @@ class Scene:
             Sensor readings and ground truth of each robot at the end of the step.
         """
         for name, command in commands.items():
+            self.wake()
             self.robot(name).command(command)
         robots, stamp, has_forces = self._robots.values(), self.stamp, self.forces.are_pending
         rate, steps = self.settings.physics_rate, 1 if has_forces else _steps_at_once(self.settings, robots)
         for _ in range(rate // self.settings.odometry_rate // steps):
-            tick = (self._physics_steps, rate, stamp)
-            if self.trajectory_player.trajectories:
-                self.trajectory_player.update(self._engine, *tick)
-            if self.crowd.links or self.doors.bodies:
-                self.crowd.update(self._engine, *tick, robots)
-                self.doors.update(self._engine, *tick, robots, self.crowd.rows)
-            for robot in robots:
-                robot.begin_steps(self._physics_steps)
-            if has_forces:
-                self.forces.apply(stamp)
-            self._engine.step(steps)
+            self._move_bodies(stamp)
+            if not self._parking.is_active:
+                for robot in robots:
+                    robot.begin_steps(self._physics_steps)
+                if has_forces:
+                    self.forces.apply(stamp)
+                self._engine.step(steps)
             self._physics_steps += steps
             stamp = self.stamp
             for robot in robots:
                 robot.end_steps(self._physics_steps, stamp)
         return {robot.name: robot.observe(stamp) for robot in robots}
+
+    def park(self) -> bool:
+        """Stop physics until ``wake`` or a command, if robots have stood for a while and nothing moves.
+
+        Meanwhile time, batteries, pedestrians and doors advance, and sensors measure what they do not move.
+
+        Returns:
+            Whether physics is stopped.
+        """
+        return self._parking.begin()
+
+    def skip(self, count: int) -> None:
+        """Advance a parked scene by periods of the odometry in which no sensor measures.
+
+        Once it wakes, it is the same as if it had been stepped, to the last bit.
+
+        Args:
+            count: Number of periods.
+        """
+        assert self._parking.is_active, "only a parked scene can skip steps"
+        rate = self.settings.physics_rate
+        intervals = [max(rate // times, 1) for times in MOVING_RATES] if self._has_moving_bodies else []
+        end = self._physics_steps + count * (rate // self.settings.odometry_rate)
+        while self._physics_steps < end:
+            self._move_bodies(self.stamp)
+            self._physics_steps = self._parking.next_step(self._physics_steps, end, intervals)
+            for robot in self._robots.values():
+                robot.update_power(self._physics_steps, self.stamp)
+
+    def wake(self) -> None:
+        """Let physics go on after ``park``; the noise of sensors starts afresh."""
+        self._parking.end(self._physics_steps)
+
+    @property
+    def _has_moving_bodies(self) -> bool:
+        return bool(self.trajectory_player.trajectories or self.crowd.links or self.doors.bodies)
+
+    def _move_bodies(self, stamp: float) -> None:
+        """Move what is scripted: obstacles on trajectories, pedestrians, doors."""
+        if self._has_moving_bodies:
+            tick, robots = (self._physics_steps, self.settings.physics_rate, stamp), self._robots.values()
+            self.trajectory_player.update(self._engine, *tick)
+            self.crowd.update(self._engine, *tick, robots)
+            self.doors.update(self._engine, *tick, robots, self.crowd.rows)
 
     def close(self) -> None:
         """Free the physics engine."""
@@ -276,6 +320,7 @@ class Scene:
                 the same floor.
         """
         self._engine.restore_state(self._marked_state)
+        self._parking.end(0)
         self._seed, self._stamp_at_rate, self._physics_steps = seed, 0.0, 0
         self.forces.clear()
         for number, (name, robot) in enumerate(self._robots.items()):
@@ -298,6 +343,7 @@ class Scene:
         self._robots: Dict[str, Robot] = {}
         self._starts: Dict[str, Tuple[RobotProfile, np.ndarray]] = {}
         self._marked_state = -1
+        self._parking = Parking(self._engine, self._robots, self.forces)
 
     def _add_robot(self, name: str, profile: RobotProfile, base_in_space: np.ndarray) -> None:
         mounting = Mounting(base_in_space, self.settings, self._seed, robot=len(self._robots))
@@ -312,7 +358,7 @@ def _steps_at_once(settings: SimulationSettings, robots: Iterable[Robot]) -> int
     It is a power of two: Bullet divides the time step by it, and rounding would make it skip steps.
     """
     rate = settings.physics_rate
-    actions = [max(rate // times, 1) for times in (TRAJECTORY_RATE, WALK_RATE, DOOR_RATE)]
+    actions = [max(rate // times, 1) for times in MOVING_RATES]
     largest = reduce(
         math.gcd, [*actions, *(robot.steps_at_once for robot in robots)], rate // settings.odometry_rate
     )

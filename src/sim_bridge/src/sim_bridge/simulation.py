@@ -76,6 +76,22 @@ class Simulation:
         """
         return self.scene.step({} if command is None else {ROBOT_NAME: command})[ROBOT_NAME]
 
+    def park(self) -> bool:
+        """Stop physics while nothing moves; see ``Scene.park``."""
+        return self.scene.park()
+
+    def skip(self, seconds: float) -> None:
+        """Advance a parked simulation without measurements; see ``Scene.skip``.
+
+        Args:
+            seconds: Duration, rounded to whole periods of the odometry [s].
+        """
+        self.scene.skip(round(seconds / self.step_seconds))
+
+    def wake(self) -> None:
+        """Let physics go on; see ``Scene.wake``."""
+        self.scene.wake()
+
     def mark(self) -> None:
         """Save the present state, with the robot at rest, for ``rewind``."""
         self.scene.mark()

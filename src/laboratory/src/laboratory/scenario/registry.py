@@ -12,6 +12,7 @@ from laboratory.generators.offices import Offices
 from laboratory.tasks.deliveries import read_errand, read_mission
 from laboratory.tasks.generated_deliveries import read_chores
 from laboratory.tasks.odom_goal import read_reach
+from laboratory.tasks.service_day import read_service_day
 from laboratory.tasks.task import Task
 from laboratory.worlds.barn import read_barn
 from laboratory.worlds.dynabarn import read_dynabarn
@@ -36,4 +37,5 @@ TASKS: Dict[str, Callable[[Table, Path], Task]] = {
     "mission": read_mission,
     "chores": read_chores,
     "reach": read_reach,
+    "service_day": read_service_day,
 }

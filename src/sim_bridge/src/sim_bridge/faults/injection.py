@@ -25,10 +25,14 @@ class FaultInjector:
         faults: Faults known from the start.
         seed: Seed of the run; each fault derives its random numbers from it.
         extendable: Whether faults may be added after the robot has been built.
+
+    Attributes:
+        now: Simulated time of the last update [s].
     """
 
     def __init__(self, faults: Sequence[Fault], seed: int = 0, extendable: bool = False):
         self._seed, self._extendable = seed, extendable
+        self.now = 0.0
         self._faults: List[Tuple[Fault, FaultKind]] = []
         self._begun: List[FaultKind] = []
         for fault in faults:
@@ -56,6 +60,10 @@ class FaultInjector:
         """Return the faults that are active at a simulated time [s], in the order of adding."""
         return [kind for fault, kind in self._faults if fault.start <= now < fault.end]
 
+    def are_inactive(self, start: float, end: float) -> bool:
+        """Return whether no fault is active at any time between two simulated times [s]."""
+        return all(fault.start > end or fault.end <= start for fault, _ in self._faults)
+
     def update(self, now: float, context: FaultContext) -> None:
         """Begin and end the faults of the environment that are due.
 
@@ -63,7 +71,7 @@ class FaultInjector:
             now: Simulated time [s].
             context: What the faults may change, with the present pose of the robot.
         """
-        active = self.active(now)
+        self.now, active = now, self.active(now)
         for kind in active:
             if kind not in self._begun:
                 self._begun.append(kind)
@@ -121,7 +129,7 @@ class FaultyDrive:
             self._drive.command(received)
 
     def wheel_speeds(self, seconds: float) -> Tuple[float, float]:
-        self._now += seconds
+        self._now = max(self._now + seconds, self._injector.now)  # a parked robot's drive is not advanced
         left, right = self._drive.wheel_speeds(seconds)
         for kind in self._injector.active(self._now):
             left, right = kind.wheel_speeds(left, right)

@@ -12,7 +12,7 @@ from sim_bridge.geometry.pose3 import IDENTITY, cross, inverse, position, quater
 from sim_bridge.physics.attachments import Attachments
 from sim_bridge.physics.bullet import BulletClient, pybullet
 from sim_bridge.physics.collision_queries import CollisionQueries
-from sim_bridge.physics.frames import centre_of_mass_of, link_at, root_pose_of
+from sim_bridge.physics.frames import centre_of_mass_of, is_any_moving, link_at, root_pose_of
 from sim_bridge.physics.joints import Joints
 from sim_bridge.physics.kinematics import KinematicState
 from sim_bridge.physics.multibody import build_multibody, kinematic_trees
@@ -75,8 +75,7 @@ class Engine:
     """
 
     def __init__(self, rate: int, gravity: float):
-        self._bullet = BulletClient()
-        self._registry = BodyRegistry()
+        self._bullet, self._registry = BulletClient(), BodyRegistry()
         # Friction is limited in two directions apart, as by default in Gazebo (ODE's pyramid model); Bullet's
         # cone costs half as much again.
         self._bullet.setPhysicsEngineParameter(
@@ -224,6 +223,10 @@ class Engine:
         arm = [there - here for there, here in zip(position(pose), point)]
         return KinematicState(pose, np.array(linear) + cross(angular, arm), np.array(angular))
 
+    def is_moving(self, speed: float) -> bool:
+        """Return whether physics moves anything along or about an axis faster than ``speed`` [m/s, rad/s]."""
+        return is_any_moving(self._bullet, self._registry, speed)
+
     def pose_of(self, name: str) -> np.ndarray:
         """Return the pose (4, 4) of a link in the world frame."""
         planar = self._planar_bodies.get(name)
@@ -231,8 +234,7 @@ class Engine:
             link = self._registry.links[name]
             return centre_of_mass_of(self._bullet, link) @ link.from_centre
         pose = planar.link_above_origin.copy()
-        pose[0, 3] += planar.x
-        pose[1, 3] += planar.y
+        pose[:2, 3] += planar.x, planar.y
         return pose
 
     def set_state(self, name: str, state: KinematicState) -> None:

@@ -5,7 +5,7 @@ from typing import Sequence
 import numpy as np
 
 from sim_bridge.physics.bullet import BulletClient, pybullet
-from sim_bridge.physics.registry import BulletLink
+from sim_bridge.physics.registry import BodyRegistry, BulletLink
 
 
 def matrix_of(point: Sequence[float], orientation: Sequence[float]) -> np.ndarray:
@@ -51,3 +51,16 @@ def centre_of_mass_of(bullet: BulletClient, link: BulletLink) -> np.ndarray:
     if link.link_index < 0:
         return root_pose_of(bullet, link)
     return matrix_of(*bullet.getLinkState(link.body_id, link.link_index, computeForwardKinematics=1)[:2])
+
+
+def is_any_moving(bullet: BulletClient, registry: BodyRegistry, speed: float) -> bool:
+    """Return whether physics moves a link along or about an axis faster than ``speed`` [m/s and rad/s]."""
+    moved = (link for link in registry.links.values() if not registry.is_static(link.body_id))
+    return any(np.abs(velocities_of(bullet, link)).max() > speed for link in moved)
+
+
+def velocities_of(bullet: BulletClient, link: BulletLink) -> np.ndarray:
+    """Return the linear and angular velocity (2, 3) of a link's centre of mass [m/s and rad/s]."""
+    if link.link_index < 0:
+        return np.array(bullet.getBaseVelocity(link.body_id))
+    return np.array(bullet.getLinkState(link.body_id, link.link_index, computeLinkVelocity=1)[6:8])

@@ -29,6 +29,10 @@ class KinematicState:
         """The pose in the plane: x, y and yaw."""
         return to_pose2(self.pose)
 
+    def is_moving(self, speed: float) -> bool:
+        """Return whether the frame moves along or about an axis faster than ``speed`` [m/s and rad/s]."""
+        return bool(max(np.abs(self.linear).max(), np.abs(self.angular).max()) > speed)
+
     def of_frame(self, frame_in_this: np.ndarray) -> "KinematicState":
         """Return the state of a frame that is fixed to this one.
 

@@ -7,7 +7,7 @@ import numpy as np
 from sim_bridge.driving.drive import REST_SECONDS
 from sim_bridge.physics.engine import Engine
 from sim_bridge.physics.joints import Motors
-from sim_bridge.physics.kinematics import KinematicState, at_rest
+from sim_bridge.physics.kinematics import at_rest
 
 # Speed [m/s and rad/s] below which friction holds a vehicle, and displacement [m] from where it was held
 # above which it has been moved; a robot that stands on Bullet's floor creeps at 1e-5.
@@ -37,6 +37,11 @@ class Standstill:
         self._engine, self._base, self._motors = engine, base, motors
         self.release()
 
+    @property
+    def is_held(self) -> bool:
+        """Whether the vehicle stands and is held."""
+        return self._held is not None
+
     def release(self) -> None:
         """Let the vehicle move, because it drives or was moved."""
         self._seconds = 0.0
@@ -52,7 +57,7 @@ class Standstill:
         if self._seconds < REST_SECONDS:
             return
         state = self._engine.state_of(self._base)
-        if _is_moving(state):
+        if state.is_moving(MAX_HELD_SPEED):
             self.release()
         elif self._held is None:
             self._held = _HeldState(state.pose, self._motors.states()[0])
@@ -61,7 +66,3 @@ class Standstill:
         else:
             self._engine.set_state(self._base, at_rest(self._held.pose))
             self._motors.reset(self._held.wheel_angles)
-
-
-def _is_moving(state: KinematicState) -> bool:
-    return bool(max(np.abs(state.linear).max(), np.abs(state.angular).max()) > MAX_HELD_SPEED)

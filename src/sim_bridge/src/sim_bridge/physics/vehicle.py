@@ -113,6 +113,11 @@ class Vehicle:
         """Return the pose and velocity of the base frame in the world."""
         return self._engine.state_of(self.base)
 
+    @property
+    def is_held(self) -> bool:
+        """Whether static friction holds it, because it has stood for a while; never if omnidirectional."""
+        return not self.is_omnidirectional and self._standstill.is_held
+
     def wheels(self) -> Tuple[Tuple[float, ...], Tuple[float, ...]]:
         """Return the angles [rad] and speeds [rad/s] of the wheels, those on the left first."""
         return ((), ()) if self.is_omnidirectional else self._motors.states()

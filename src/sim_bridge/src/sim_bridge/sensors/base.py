@@ -6,7 +6,7 @@ put into a scene, ``spec.build(mounting)`` makes the sensor with its noise and r
 is called once. A wrapper that meets the contract can replace a sensor: see SensorWrapper.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Generic, List, NamedTuple, Optional, Protocol, Sequence, Tuple, TypeVar
 
 import numpy as np
@@ -22,6 +22,8 @@ Value = TypeVar("Value")
 Measurement = TypeVar("Measurement", covariant=True)
 # Streams of random numbers below this belong to odometry and range finders.
 FIRST_OTHER_STREAM = 100
+# Part of the seeds of generators that start afresh.
+RESTART = 7_000_001
 
 __getattr__ = deprecated_names(__name__, {"Surroundings": "SensorContext"})
 
@@ -190,6 +192,33 @@ class SensorWrapper(Generic[Value]):
         return self._sensor.measure(context)
 
 
+class NoiseStreams:
+    """Random generators of a robot's sensors, which start afresh after an idle time."""
+
+    def __init__(self) -> None:
+        self._generators: List[Tuple[List[int], np.random.Generator]] = []
+
+    def make(self, key: List[int]) -> np.random.Generator:
+        """Return a new generator.
+
+        Args:
+            key: Its seeds.
+        """
+        generator = np.random.default_rng(key)
+        self._generators.append((key, generator))
+        return generator
+
+    def restart(self, step: int) -> None:
+        """Let all generators start afresh, differently for each step.
+
+        Args:
+            step: Number of the physics step.
+        """
+        for key, generator in self._generators:
+            state = np.random.default_rng([*key, RESTART, step]).bit_generator.state
+            generator.bit_generator.state = state
+
+
 @dataclass(frozen=True, eq=False)
 class Mounting:
     """Where and how a sensor is mounted.
@@ -200,6 +229,7 @@ class Mounting:
         seed: Seed of the simulation.
         robot: Number of the robot in its scene, from 0.
         number: Number of sensors of the same kind that the robot has before this one.
+        streams: Random generators of the robot's sensors.
     """
 
     base_in_space: np.ndarray
@@ -207,6 +237,7 @@ class Mounting:
     seed: int
     robot: int = 0
     number: int = 0
+    streams: NoiseStreams = field(default_factory=NoiseStreams)
 
     def rng(self, stream: int) -> np.random.Generator:
         """Return the sensor's random generator.
@@ -216,7 +247,7 @@ class Mounting:
                 1 (range finders), 100 (cameras) and 200 (inertial sensors).
         """
         robot = [] if self.robot == 0 and stream < FIRST_OTHER_STREAM else [self.robot]
-        return np.random.default_rng([self.seed, *robot, stream + self.number])
+        return self.streams.make([self.seed, *robot, stream + self.number])
 
 
 class SensorSpec(Protocol):

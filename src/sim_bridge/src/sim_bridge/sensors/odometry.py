@@ -115,17 +115,27 @@ class Odometer:
         self.frame = profile.frame
         self._model = model
         self._seconds = 0.0
+        self._latest, self._is_held = Odometry(), False
 
     def reset(self) -> None:
         self._model.reset()
+        self._latest = Odometry()
+
+    def hold(self, is_held: bool) -> None:
+        """Measure the last pose, at rest, without integrating, or integrate again."""
+        self._is_held = is_held
 
     def schedule(self, settings: SimulationSettings) -> Schedule:
         self._seconds = 1.0 / settings.odometry_rate
         return every(None, settings)
 
     def measure(self, context: SensorContext) -> Odometry:
+        if self._is_held:
+            return Odometry(self._latest.base_in_odom)
         angles, _ = context.wheels
-        return self._model.update(TrueMotion(context.base.pose2, context.twist, angles, self._seconds))
+        motion = TrueMotion(context.base.pose2, context.twist, angles, self._seconds)
+        self._latest = self._model.update(motion)
+        return self._latest
 
 
 class TrueOdometry:
