@@ -66,6 +66,13 @@ class BridgeSettings(RunTimeSettings):
     wait_for: str = parameter(
         "", "names of the nodes, separated by spaces, that are synchronised with the simulation"
     )
+    pace_all: bool = parameter(
+        False,
+        "with speed 0 or above 1, time waits until all other nodes on this machine rest, except bystanders",
+    )
+    bystanders: str = parameter(
+        "", "beginnings of the names of nodes that pace_all does not wait for, separated by spaces"
+    )
     static_publishers: str = parameter(
         "",
         "names of nodes, separated by spaces, whose static transforms the synchronised nodes receive before "

@@ -15,8 +15,9 @@ from planar import PlanarError
 from run_project.checkout.dry_run import recorded_calls
 from run_project.checkout.entry import choose_script, is_home_service_script
 from run_project.checkout.layout import Checkout, ProjectError, read_checkout
-from run_project.checkout.needs import missing_packages, unset_variables
+from run_project.checkout.needs import missing_packages, navigation_nodes, unset_variables
 from run_project.checkout.placement import READ_SUFFIXES, Placement, best_placement
+from run_project.checkout.vendored import is_vendored
 from run_project.course.launch_plan import CourseProject, ProjectLaunchPlan, find_launch_plan
 from run_project.judging.log_errors import find_log_errors
 from run_project.judging.run_record import ProjectRunRecord
@@ -50,10 +51,11 @@ WORK_FOLDER = PACKAGE_FOLDER.parents[2] / "build" / "projects"
 OFFSCREEN = {"QT_QPA_PLATFORM": "offscreen"}
 MAX_TEXT_BYTES = 3_000_000
 ROS_FOLDER = re.compile(r"/opt/ros/[a-z]+")
-# Simulator parameters for every run: the nodes that speed 0 waits for, and odometry without drift, as in
-# Gazebo, because many projects compare positions in the map with /odom.
+# Simulator parameters for every run: what speed 0 waits for, and odometry without drift, as in Gazebo,
+# because many projects compare positions in the map with /odom.
 SIMULATOR_PARAMETERS = {
-    "wait_for": "amcl move_base",
+    "pace_all": True,
+    "bystanders": "run_project record cockpit rviz",
     "odometry_rate": 200,
     "noise": "ideal",
     "range_noise": 0.01,
@@ -97,6 +99,7 @@ def run(options: ProjectOptions) -> int:
         script = _prepare_script(checkout, options, plan, work.path)
         texts = read_path_texts(checkout, script)
         needs = _lacking(checkout, script, texts[script])
+        nodes = navigation_nodes(_own_texts(checkout, texts))
         placement = find_placement(checkout, script, texts, work.path, options.script_arguments)
         folder = create_run_folder(options.output.resolve(), "run_project")
         logs = folder / "log"
@@ -116,7 +119,7 @@ def run(options: ProjectOptions) -> int:
             display.print(f"provides {target}, for this run alone")
         display.print(f"runs {_script_name(script, plan)}; times are simulated:")
         about = {"project": str(checkout.root), "script": _script_name(script, plan)}
-        return run_command(options, command, folder, workspace, display, about, plan)
+        return run_command(options, command, folder, workspace, display, about, plan, nodes)
 
 
 def _warn_about_missing_files(checkout: Checkout, display: Display) -> None:
@@ -140,6 +143,16 @@ def _lacking(checkout: Checkout, script: str, text: str) -> List[str]:
         ),
         *(f"{script} uses ${name}, which is not set: set it as its author has it" for name in variables),
     ]
+
+
+def _own_texts(checkout: Checkout, texts: Dict[str, str]) -> List[str]:
+    """Scripts, and launch files but for those in copies of public packages."""
+    found = []
+    for file, text in texts.items():
+        package = checkout.package_of(Path(file)) if file.endswith((".launch", ".xml")) else ""
+        if package is not None and not is_vendored(package):
+            found.append(text)
+    return found
 
 
 def _launch_plan(checkout: Checkout, options: ProjectOptions) -> Optional[ProjectLaunchPlan]:
@@ -257,6 +270,7 @@ def run_command(
     display: Display,
     about: Dict[str, str],
     plan: Optional[ProjectLaunchPlan] = None,
+    wait_for: Sequence[str] = (),
 ) -> int:
     """Run the script, judge the run and write result.json.
 
@@ -268,12 +282,13 @@ def run_command(
         display: Console output.
         about: Entries of result.json that identify the run; ``script`` decides whether goals are required.
         plan: The launch plan if this is a course project without a script.
+        wait_for: Nodes of navigation that advance in lock-step with the simulation.
 
     Returns:
         Exit code: 0 success, 1 failure, 130 interrupted.
     """
     started = time.monotonic()
-    parameters = _parameters(options, plan)
+    parameters = _parameters(options, plan, wait_for)
     run = ProjectRun(command, folder / "log", parameters, display, PROCEDURES[plan.project] if plan else None)
     failure, is_interrupted = None, False
     try:
@@ -332,20 +347,20 @@ def _watch_run(
         cockpit.close()
 
 
-def _parameters(options: ProjectOptions, plan: Optional[ProjectLaunchPlan]) -> Dict[str, object]:
+def _parameters(
+    options: ProjectOptions, plan: Optional[ProjectLaunchPlan], wait_for: Sequence[str]
+) -> Dict[str, object]:
     """ROS parameters of the simulator; the project sets all others.
 
-    The scripted user needs real time, so this is the default for course projects. Without navigation the
-    simulator waits for none of its nodes.
+    The scripted user needs real time, so this is the default for course projects.
     """
     speed = options.effective_speed if plan is None or options.speed is not None else 1.0
-    navigates = plan is None or plan.project is CourseProject.LOCALIZE
-    simulator = SIMULATOR_PARAMETERS if navigates else {**SIMULATOR_PARAMETERS, "wait_for": ""}
     return {
+        "/gazebo/wait_for": " ".join(wait_for),
         "/use_sim_time": True,
         "/gazebo/speed": speed,
         "/gazebo/seed": options.seed,
-        **{f"/gazebo/{name}": value for name, value in simulator.items()},
+        **{f"/gazebo/{name}": value for name, value in SIMULATOR_PARAMETERS.items()},
     }
 
 

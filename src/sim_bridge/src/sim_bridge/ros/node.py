@@ -34,6 +34,7 @@ from sim_bridge.ros.gazebo.server import NAMESPACE
 from sim_bridge.ros.performance import Performance
 from sim_bridge.ros.robot_manager import RobotManager
 from sim_bridge.ros.timing.lock_step import LockStep
+from sim_bridge.ros.timing.paced_nodes import PacedNodes
 from sim_bridge.ros.timing.time_control import TimeControl
 from sim_bridge.scene import Scene
 from sim_bridge.sdf import load_world
@@ -81,7 +82,9 @@ class Bridge:
         self._lock_step = LockStep(wait_for, static_publishers, settings.latency, self._calls)
         self._clock = rospy.Publisher("/clock", Clock, queue_size=10, latch=True, tcp_nodelay=True)
         self._performance = Performance()
-        self._time = TimeControl(self._scene, pacer, self._lock_step, self._calls)
+        bystanders = tuple(f"/{name}" for name in settings.bystanders.split())
+        paced = PacedNodes(self._calls, self._lock_step.add_remark, settings.pace_all, bystanders)
+        self._time = TimeControl(self._scene, pacer, self._lock_step, paced, self._calls)
         self._robots = RobotManager(self._scene, self._calls, joint_steps)
         for start in robots:
             self._robots.add(*start)

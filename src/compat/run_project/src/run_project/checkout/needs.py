@@ -1,7 +1,7 @@
-"""What a script needs that is not there, found before the build: packages and environment variables."""
+"""What a project needs, found before the build: packages, environment variables, nodes of navigation."""
 
 import re
-from typing import Callable, Container, List
+from typing import Callable, Container, Iterable, List
 
 _STARTED = re.compile(r"\b(?:roslaunch|rosrun|roscd)\s+(?:-{1,2}[\w-]+\s+)*([a-zA-Z]\w*)(?=[\s\"']|$)")
 _COMMENT = re.compile(r"(?:^|(?<=\s))#.*", re.MULTILINE)
@@ -16,6 +16,11 @@ _OF_BASH = frozenset(
     "BASH BASHPID BASH_SOURCE BASH_VERSION DIRSTACK EUID FUNCNAME GROUPS HOSTNAME HOSTTYPE IFS LINENO "
     "MACHTYPE OLDPWD OPTARG OPTIND OSTYPE PIPESTATUS PPID PWD RANDOM REPLY SECONDS SHELL SHLVL UID".split()
 )
+_NODE = re.compile(r"<node\b[^>]*>")
+_ATTRIBUTE = re.compile(r"\b(pkg|name)\s*=\s*[\"']([^\"']*)")
+# Packages whose nodes advance in lock-step, and what starts both in launch files of public packages.
+_NAVIGATION = ("amcl", "move_base")
+_STARTS_NAVIGATION = re.compile(r"turtlebot3?_navigation|\bamcl_demo")
 
 
 def missing_packages(script: str, is_there: Callable[[str], bool]) -> List[str]:
@@ -41,3 +46,18 @@ def unset_variables(script: str, environment: Container[str]) -> List[str]:
     assigned.update(*(_WORD.findall(words) for words in _READ.findall(text)))
     used = {first or second for first, second in _USED.findall(_SINGLE_QUOTED.sub("", text))}
     return sorted(name for name in used - assigned if name not in environment)
+
+
+def navigation_nodes(texts: Iterable[str]) -> List[str]:
+    """Names of the nodes of localization and navigation that a project starts.
+
+    Args:
+        texts: Its scripts and the launch files of its own packages.
+    """
+    found = set()
+    for text in texts:
+        tags = (dict(_ATTRIBUTE.findall(tag)) for tag in _NODE.findall(text))
+        found.update(tag["name"] for tag in tags if tag.get("pkg") in _NAVIGATION and "name" in tag)
+        if _STARTS_NAVIGATION.search(_COMMENT.sub("", text)):
+            found.update(_NAVIGATION)
+    return sorted(name for name in found if "$(" not in name)

@@ -2,7 +2,7 @@
 
 import threading
 import time
-from typing import Callable, Dict, FrozenSet, List, Optional
+from typing import Callable, Dict, FrozenSet, List, Optional, Tuple
 
 import rospy
 
@@ -30,14 +30,24 @@ class PacedNodes:
     Args:
         calls: Queue of the thread that owns the scene; what arrives there may not be the last.
         remark: Called with a reason why the run may not be repeatable.
+        paces_all: Wait for all nodes of this machine, not only while nodes start.
+        bystanders: Beginnings of the names, with slash, of nodes that are never waited for.
     """
 
-    def __init__(self, calls: CallQueue, remark: Callable[[str], None]):
+    def __init__(
+        self,
+        calls: CallQueue,
+        remark: Callable[[str], None],
+        paces_all: bool = False,
+        bystanders: Tuple[str, ...] = (),
+    ):
         self._calls, self._remark = calls, remark
+        self._paces_all, self._bystanders = paces_all, bystanders
         self._barrier = RestBarrier()
         self._threads: Dict[str, ProcessThreads] = {}
         self._found: Dict[str, int] = {}
         self._wanted: FrozenSet[str] = frozenset()
+        self._synchronised: FrozenSet[str] = frozenset()
         self._submitted = 0
         self._reported: FrozenSet[str] = frozenset()
         self._search: Optional[threading.Thread] = None
@@ -51,10 +61,10 @@ class PacedNodes:
         waited_for = self._wanted.intersection(self._threads).difference(self._barrier.given_up)
         return frozenset(name[1:] for name in waited_for)
 
-    def set_nodes(self, names: FrozenSet[str]) -> None:
-        """Set the names of the nodes to wait for."""
-        self._wanted = names
-        if names and self._search is None:
+    def set_nodes(self, names: FrozenSet[str], synchronised: FrozenSet[str]) -> None:
+        """Set the names of the nodes to wait for, and of those for which the simulation waits elsewhere."""
+        self._wanted, self._synchronised = names, synchronised
+        if (names or self._paces_all) and self._search is None:
             self._search = threading.Thread(target=self._find, daemon=True)
             self._search.start()
 
@@ -65,7 +75,7 @@ class PacedNodes:
             stamp: Present simulated time [s].
             is_answered: Whether all synchronised nodes have answered; they send messages before.
         """
-        if not self._wanted:
+        if not self._wanted and not self._paces_all:
             return True
         if not self._has_searched.is_set():
             return False
@@ -76,7 +86,9 @@ class PacedNodes:
         if self._changes != self._seen_changes:
             self._seen_changes, self._settled_at = self._changes, stamp + SETTLING_SECONDS
         is_settling = stamp < self._settled_at
-        chosen = self._threads.keys() if is_settling else self._wanted & self._threads.keys()
+        chosen = self._threads.keys() & self._wanted
+        if is_settling or self._paces_all:
+            chosen = self._threads.keys() - self._synchronised
         nodes = {name: self._rest_of(name, self._threads[name]) for name in sorted(chosen, reverse=True)}
         nodes[SYNCHRONISED] = lambda: is_answered
         may_step = self._barrier.may_step(stamp, time.monotonic(), nodes, self._wanted, has_news, is_settling)
@@ -133,6 +145,8 @@ class PacedNodes:
             before = registrations
             names = {MASTER, *registrations} - {rospy.get_name()}
             for name in names - self._found.keys():
+                if name.startswith(self._bystanders):
+                    continue
                 pid = check.local_process(name)
                 if pid is not None:
                     self._found[name] = pid

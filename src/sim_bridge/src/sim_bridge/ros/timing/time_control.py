@@ -41,13 +41,14 @@ class TimeControl:
         scene: The simulated world.
         pacer: Limits the speed.
         lock_step: Synchronised nodes.
+        paced: Nodes that are not synchronised, and waited for.
         calls: Queue of the thread that owns the scene.
     """
 
-    def __init__(self, scene: Scene, pacer: Pacer, lock_step: LockStep, calls: CallQueue):
+    def __init__(self, scene: Scene, pacer: Pacer, lock_step: LockStep, paced: PacedNodes, calls: CallQueue):
         self.is_paused = False
         self._lock_step = lock_step
-        self._paced = PacedNodes(calls, lock_step.add_remark)
+        self._paced = paced
         self._scene = scene
         self._pacer = pacer
         self._calls = calls
@@ -99,10 +100,10 @@ class TimeControl:
 
     def _have_nodes_rested(self) -> bool:
         """Whether nodes have caught up that neither support lock-step nor report; not asked in real time."""
-        unable = self._lock_step.unable
-        if not unable or 0.0 < self.speed <= REAL_TIME:
+        if 0.0 < self.speed <= REAL_TIME:
             return True
-        self._paced.set_nodes(unable - {f"/{name}" for name in self._pacer.reporting})
+        reporting = {f"/{name}" for name in self._pacer.reporting}
+        self._paced.set_nodes(self._lock_step.unable - reporting, self._lock_step.members | reporting)
         return self._paced.may_step(self._scene.stamp, self._lock_step.is_answered)
 
     def _wait(self, seconds: float) -> bool:
