@@ -134,7 +134,7 @@ def test_each_parameter_of_the_filter_is_checked():
 @pytest.mark.parametrize("context", CONTEXTS)
 def test_a_parameter_has_an_effect_unless_it_is_named(context):
     settings = CONTEXTS[context]
-    before, silent, named_in_vain = outcome(settings), [], []
+    before, silent, wrongly_named = outcome(settings), [], []
     for name, value in OTHER.items():
         changed = replace(settings, **{FIELDS[name]: value})
         has_effect = outcome(changed) != before
@@ -142,8 +142,8 @@ def test_a_parameter_has_an_effect_unless_it_is_named(context):
         if not has_effect and name not in named and getattr(settings, FIELDS[name]) != value:
             silent.append(name)
         if has_effect and name in named:
-            named_in_vain.append(name)
-    assert (set(silent) - FITTING.get(context, set()), named_in_vain) == (set(), [])
+            wrongly_named.append(name)
+    assert (set(silent) - FITTING.get(context, set()), wrongly_named) == (set(), [])
 
 
 def test_defaults_are_not_named():
@@ -171,7 +171,7 @@ def test_the_reason_names_the_parameter_that_decides(changed, name, reason):
 
 
 @pytest.mark.parametrize("preset", ["turtlebot.yaml"])
-def test_the_presets_set_nothing_in_vain(preset):
+def test_the_presets_set_only_what_has_an_effect(preset):
     values = yaml.safe_load((PRESETS / preset).read_text())
     settings, _ = settings_from(NodeSettings, values, official_names(NodeSettings))
     assert parameters_without_effect(settings) == {}

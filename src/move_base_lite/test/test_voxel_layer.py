@@ -48,7 +48,7 @@ def test_voxels_keep_their_place_when_the_window_moves(costmap):
     assert cost(costmap) == FREE, "a ray passed the high voxel"
 
 
-def test_clearing_a_costmap_forgets_voxels(costmap):
+def test_clearing_a_costmap_clears_voxels(costmap):
     see(costmap, START, LOW, HIGH)
     costmap.clear_around(START, 4.0)
     assert cost(costmap) == FREE

@@ -41,7 +41,7 @@ def scan(stamp):
 def test_a_scan_keeps_the_mounting_of_its_stamp(scans, mount):
     mount.until = 3.0
     scans.add(scan(1.0), 1.1)
-    placed, received = scans.take()
+    placed, received = scans.latest()
     assert (placed.laser_in_base.yaw, received) == (TURN_RATE * 1.0, 1.1)
 
 
@@ -49,10 +49,10 @@ def test_a_scan_waits_for_the_transform_of_its_stamp(scans, mount):
     mount.until = 1.0
     scans.add(scan(1.0), 1.0)
     scans.add(scan(2.0), 2.0)
-    assert scans.take()[1] == 1.0
+    assert scans.latest()[1] == 1.0
     assert scans.missing() == "base -> laser at 2.000"
     mount.until = 2.0
-    assert scans.take()[0].laser_in_base.yaw == TURN_RATE * 2.0
+    assert scans.latest()[0].laser_in_base.yaw == TURN_RATE * 2.0
     assert scans.missing() == ""
 
 
@@ -60,15 +60,15 @@ def test_of_scans_with_known_transforms_the_newest_counts(scans, mount):
     mount.until = 2.5
     for stamp in (1.0, 2.0, 3.0):
         scans.add(scan(stamp), stamp)
-    assert scans.take()[1] == 2.0
+    assert scans.latest()[1] == 2.0
     mount.until = 3.0
-    assert scans.take()[1] == 3.0
+    assert scans.latest()[1] == 3.0
 
 
 def test_scans_without_transforms_are_dropped_after_some(scans, mount):
     for stamp in range(1, WAITING_SCANS + 2):
         scans.add(scan(float(stamp)), float(stamp))
     mount.until = 1.0
-    assert scans.take() is None
+    assert scans.latest() is None
     scans.clear()
     assert scans.missing() == ""

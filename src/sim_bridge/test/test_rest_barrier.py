@@ -6,8 +6,8 @@ import time
 
 import pytest
 
-from sim_bridge.process_rest import ProcessThreads, is_native
-from sim_bridge.rest_barrier import MOST_NEWS, OTHERS_PATIENCE_SECONDS, RECOVERY_SECONDS, RestBarrier
+from sim_bridge.rest.barrier import MOST_NEWS, OTHERS_PATIENCE_SECONDS, RECOVERY_SECONDS, RestBarrier
+from sim_bridge.rest.threads import ProcessThreads, is_native
 
 PERIOD, QUIET, PATIENCE, LOOK = 0.05, 0.002, 5.0, 0.0005
 
@@ -84,7 +84,7 @@ def test_a_node_that_is_late_once_is_waited_for_again():
     assert not run.barrier.given_up
 
 
-def test_a_node_that_has_ended_is_forgotten():
+def test_a_node_that_has_ended_is_dropped():
     run = Run(spinning=1e9)
     run.step()
     del run.busy_until["spinning"]

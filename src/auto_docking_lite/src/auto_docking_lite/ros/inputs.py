@@ -83,7 +83,7 @@ class DockTopics:
             if abs(at - stamp) <= MAX_SKEW:
                 matched.append((pose, signal))
         odom_in_map = self._transforms.lookup(settings.global_frame, settings.odom_frame)
-        placed, base = self._scans.take(), odometry[-1][1]
+        placed, base = self._scans.latest(), odometry[-1][1]
         scan = placed[0] if placed else None
         return DockInputs(now, base, tuple(matched), core.bumper, core.charger, scan, odom_in_map)
 

@@ -58,7 +58,7 @@ class CollisionMonitorNode:
             self._publish(self._limited())
 
     def _limited(self) -> LimitedCommand:
-        placed = self._scans.take()
+        placed = self._scans.latest()
         if placed is None or not 0.0 <= rospy.get_time() - placed[1] <= self._settings.scan_timeout:
             return LimitedCommand(Twist2(), SILENT)
         if not self._command.is_finite():

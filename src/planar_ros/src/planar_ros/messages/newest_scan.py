@@ -39,7 +39,7 @@ class NewestScan:
         with self._lock:
             self._waiting.append((message, now))
 
-    def take(self) -> Optional[Tuple[Scan, float]]:
+    def latest(self) -> Optional[Tuple[Scan, float]]:
         """Return the newest scan whose mounting pose is known and when it was received [s]; None without."""
         with self._lock:
             for number in range(len(self._waiting) - 1, -1, -1):

@@ -135,48 +135,64 @@ def _integrate(
     traced = np.zeros((row_max - row_min, col_max - col_min), dtype=np.uint16)
     for i in range(ranges.size):
         height = heights[i] if heights.size > 1 else heights[0]
-        if not height_limits[0] <= height <= height_limits[1]:
-            continue
-        reach, is_return = ranges[i], True
-        if math.isinf(reach) and reach > 0.0 and inf_is_valid:
-            reach, is_return = range_limits[1], False
-        elif not (range_limits[0] <= reach < range_limits[1]):
+        reach, is_return = _reach_of(ranges[i], range_limits, inf_is_valid)
+        if reach < 0.0 or not height_limits[0] <= height <= height_limits[1]:
             continue
         dx = reach * (c * directions[i, 0] - s * directions[i, 1])
         dy = reach * (s * directions[i, 0] + c * directions[i, 1])
-        dz = height - z
-        distance = math.sqrt(reach * reach + dz * dz)
+        dz, distance = height - z, math.sqrt(reach * reach + (height - z) ** 2)
         if clear_cells == 0:
-            if is_return and height <= height_limits[2] and distance < mark_range:
-                row, col = math.floor(y + dy), math.floor(x + dx)
-                level = math.floor((max(height, origin_z) - origin_z) / z_resolution)
-                if row_min <= row < row_max and col_min <= col < col_max and level < z_voxels:
-                    column = columns[row, col] | (np.uint32(0x10001) << np.uint32(level))
-                    columns[row, col] = column
-                    if _count_bits(column >> np.uint32(VOXELS_PER_COLUMN)) > thresholds[0]:
-                        costs[row, col] = LETHAL
+            is_marked = is_return and height <= height_limits[2] and distance < mark_range
+            row, col = math.floor(y + dy), math.floor(x + dx)
+            level = math.floor((max(height, origin_z) - origin_z) / z_resolution)
+            if is_marked and row_min <= row < row_max and col_min <= col < col_max and level < z_voxels:
+                _mark_voxel(costs, columns, row, col, level, thresholds)
             continue
-        part = max(0.0, 1.0 - CELLS_BEFORE_END * resolution / distance) if distance > 0.0 else 0.0
-        dx, dy, dz = part * dx, part * dy, part * dz
-        part = _part_inside(x, y, z, dx, dy, dz, rows, cols, origin_z, height_limits[2])
-        end_x, end_y, end_z = x + part * dx, y + part * dy, (z + part * dz - origin_z) / z_resolution
-        row, col, level = math.floor(end_y), math.floor(end_x), math.floor(end_z + 1e-9)
-        if not (0 <= row < rows and 0 <= col < cols and 0 <= level < z_voxels):
+        ray = x, y, z, dx, dy, dz, distance / resolution
+        row, col, level, part = _end_of_ray(ray, rows, cols, grid, height_limits[2])
+        if level < 0:
             continue
         if row_min <= row < row_max and col_min <= col < col_max:
             if traced[row - row_min, col - col_min] >> level & 1:
                 continue
             traced[row - row_min, col - col_min] |= 1 << level
-        up = part * dz / z_resolution
-        length = math.sqrt((part * dx) ** 2 + (part * dy) ** 2 + up * up)
-        _clear_ray(
-            costs,
-            columns,
-            (math.floor(x), math.floor(y), start_z),
-            (col, row, level),
-            clear_cells / length if length > clear_cells else 1.0,
-            thresholds,
-        )
+        length = part * math.sqrt(dx * dx + dy * dy + (dz / z_resolution) ** 2)
+        share = clear_cells / length if length > clear_cells else 1.0
+        _clear_ray(costs, columns, (int(x), int(y), start_z), (col, row, level), share, thresholds)
+
+
+@numba.njit(cache=True)
+def _reach_of(measured, range_limits, inf_is_valid):
+    """Length of a beam, -1 if it is not used, and whether it has a return."""
+    if math.isinf(measured) and measured > 0.0 and inf_is_valid:
+        return range_limits[1], False
+    return (measured, True) if range_limits[0] <= measured < range_limits[1] else (-1.0, False)
+
+
+@numba.njit(cache=True)
+def _end_of_ray(ray, rows, cols, grid, max_height):
+    """Row, column and level of the last voxel that a ray clears, and the part of the ray up to there.
+
+    ``ray``: origin and vector, x and y in cells, z in metres, and its length in cells. The level is -1 if the
+    voxel does not exist.
+    """
+    x, y, z, dx, dy, dz, cells = ray
+    origin_z, z_resolution, z_voxels = grid
+    part = max(0.0, 1.0 - CELLS_BEFORE_END / cells) if cells > 0.0 else 0.0
+    part *= _part_inside(x, y, z, part * dx, part * dy, part * dz, rows, cols, origin_z, max_height)
+    row, col = math.floor(y + part * dy), math.floor(x + part * dx)
+    level = math.floor((z + part * dz - origin_z) / z_resolution + 1e-9)
+    is_inside = 0 <= row < rows and 0 <= col < cols and 0 <= level < z_voxels
+    return row, col, level if is_inside else -1, part
+
+
+@numba.njit(cache=True)
+def _mark_voxel(costs, columns, row, col, level, thresholds):
+    """Mark a voxel, and its cell if more voxels of the column are marked than a free one may have."""
+    column = columns[row, col] | (np.uint32(0x10001) << np.uint32(level))
+    columns[row, col] = column
+    if _count_bits(column >> np.uint32(VOXELS_PER_COLUMN)) > thresholds[0]:
+        costs[row, col] = LETHAL
 
 
 @numba.njit(cache=True)

@@ -8,7 +8,7 @@ from typing import Collection, Dict, FrozenSet, List, Set
 import rospy
 
 from planar_ros.lockstep.client import observers
-from sim_bridge.process_rest import is_native
+from sim_bridge.rest.threads import is_native
 from sim_bridge.ros.timing.connection_check import ConnectionCheck
 
 # Names of the observers to wait for, separated by spaces; a launch file knows them before they start.

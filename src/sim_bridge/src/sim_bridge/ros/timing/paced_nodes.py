@@ -7,8 +7,8 @@ from typing import Callable, Dict, FrozenSet, List, Optional, Tuple
 import rospy
 
 from rospy_transport.connections import has_unread
-from sim_bridge.process_rest import ProcessThreads
-from sim_bridge.rest_barrier import PATIENCE_SECONDS, RestBarrier
+from sim_bridge.rest.barrier import PATIENCE_SECONDS, RestBarrier
+from sim_bridge.rest.threads import ProcessThreads
 from sim_bridge.ros.call_queue import CallQueue
 from sim_bridge.ros.timing.connection_check import ConnectionCheck
 

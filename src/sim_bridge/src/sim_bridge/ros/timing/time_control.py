@@ -16,7 +16,7 @@ from planar_ros.node.parameters import SettingsReconfigureServer
 from planar_ros.node.readiness import ReadinessMonitor, StallReporter
 from sim_bridge.config import RunTimeSettings
 from sim_bridge.pacing import REAL_TIME, Pacer
-from sim_bridge.rest_barrier import LOOK_SECONDS
+from sim_bridge.rest.barrier import LOOK_SECONDS
 from sim_bridge.ros.call_queue import CallQueue
 from sim_bridge.ros.timing.lock_step import LockStep
 from sim_bridge.ros.timing.paced_nodes import PacedNodes

@@ -65,7 +65,7 @@ class RestBarrier:
         self.given_up: Dict[str, float] = {}
 
     def reset(self) -> None:
-        """Forget the time of the next barrier, as simulated time restarts."""
+        """Discard the time of the next barrier, as simulated time restarts."""
         self._next, self._barrier = 0.0, None
 
     def may_step(

@@ -1,0 +1,1 @@
+"""Nodes that do not support lock-step: whether they rest, and when simulated time may pass."""
