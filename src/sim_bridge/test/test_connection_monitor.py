@@ -39,6 +39,7 @@ def parameters(monkeypatch):
     monkeypatch.setattr(connection_monitor.rospy, "logwarn", lambda *_: None)
     yield values
     shutdown.append(True)
+    time.sleep(5.0 * connection_monitor.POLL_SECONDS)  # the threads still use what is patched
 
 
 def joined():
