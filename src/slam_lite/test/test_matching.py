@@ -51,7 +51,7 @@ def test_a_scan_matches_itself_exactly(office):
 
 
 def test_kernels_recognize_the_type_of_a_local_map_from_call_to_call():
-    """numba 0.58 loses the first 40 bytes of a longer key, and finds the type of the argument anew."""
+    """numba 0.58 loses the first 40 bytes of a longer key, and finds the type of the argument again."""
     keys = [_dispatcher.compute_fingerprint(part) for part in long_range_map().packed_layers]
     assert max(len(key) for key in keys) <= 40
 
