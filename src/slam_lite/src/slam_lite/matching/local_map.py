@@ -163,7 +163,7 @@ class LocalMap:
         """``layers`` as three arguments for a kernel, which ``unpacked`` turns into layers.
 
         numba 0.58 does not recognize the type of a tuple of more than four arrays from call to call, and
-        finds it anew each time, which takes longer than a match.
+        finds it again each time, which takes longer than a match.
         """
         coarse = self.coarse_map or _EMPTY
         geometry = np.array([_geometry(self, self), _geometry(coarse, self)])
