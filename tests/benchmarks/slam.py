@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Score slam_lite on logs of the Freiburg SLAM benchmark by their hand-verified relations.
+"""Score slam_lite on real logs: by hand-verified relations, or by poses that others have corrected.
 
 R. Kuemmerle et al., "On measuring the accuracy of SLAM algorithms", Autonomous Robots 27, 2009. A relation is
 the pose at one time relative to that at another; the error of a trajectory is its mean difference over all
-relations. A folder of logs holds pairs NAME.relations and NAME*.bag; each is replayed by the command
-slam_lite_replay; its CPU time and memory include start-up and reading.
+relations. Corrected poses are compared after the best rigid alignment of both trajectories (ATE). A folder of
+logs holds pairs NAME.relations (``t1 t2 x y z roll pitch yaw``) or NAME.truth (``t x y yaw``), and NAME*.bag;
+each is replayed by the command slam_lite_replay; its CPU time and memory include start-up and reading.
 
     python3 tests/benchmarks/slam.py LOGS --out runs/slam
 """
@@ -36,10 +37,11 @@ SAME_STAMP = 1e-4
 
 @dataclass(frozen=True)
 class Score:
-    """Errors over all relations of one log, metres and radians, and the cost of the replay."""
+    """Errors of one log over all relations or corrected poses, metres and radians, and the replay's cost."""
 
     log: str
-    relations: int
+    kind: str
+    count: int
     translation_mean: float
     translation_std: float
     rotation_mean: float
@@ -55,29 +57,29 @@ def main() -> int:
     options = _options()
     logs = [log for folder in options.folders for log in find_logs(folder)]
     if not logs:
-        print("error: no NAME.relations with a NAME*.bag in the folders", file=sys.stderr)
+        print("error: no NAME.relations or NAME.truth with a NAME*.bag in the folders", file=sys.stderr)
         return 2
     options.out.mkdir(parents=True, exist_ok=True)
-    scores = [score_log(bag, relations, options.out, options.config) for bag, relations in logs]
-    for _, relations in logs:  # after all replays, whose memory would otherwise include this process's
-        draw(options.out / relations.stem)
+    scores = [score_log(bag, reference, options.out, options.config) for bag, reference in logs]
+    for _, reference in logs:  # after all replays, whose memory would otherwise include this process's
+        draw(options.out / reference.stem)
     (options.out / "slam.json").write_text(json.dumps([asdict(score) for score in scores], indent=2) + "\n")
     Console(width=120).print(_table(scores))
     return 0
 
 
 def find_logs(folder: Path) -> List[Tuple[Path, Path]]:
-    """Pairs (bag, relations) of a folder, by name."""
+    """Pairs (bag, relations or corrected poses) of a folder, by name."""
     pairs = []
-    for relations in sorted(folder.glob("*.relations")):
-        bags = sorted(folder.glob(relations.stem + "*.bag"))
-        pairs += [(bags[0], relations)] if bags else []
+    for reference in sorted((*folder.glob("*.relations"), *folder.glob("*.truth"))):
+        bags = sorted(folder.glob(reference.stem + "*.bag"))
+        pairs += [(bags[0], reference)] if bags else []
     return pairs
 
 
-def score_log(bag: Path, relations_path: Path, out: Path, config: Optional[Path] = None) -> Score:
+def score_log(bag: Path, reference: Path, out: Path, config: Optional[Path] = None) -> Score:
     """Replay a bag, write its map and trajectory to ``out``, and score the trajectory."""
-    stem = out / relations_path.stem
+    stem = out / reference.stem
     tum = stem.with_suffix(".tum")
     command = [sys.executable, str(REPLAY), str(bag), "--map", str(stem), "--trajectory", str(tum)]
     start = time.monotonic()
@@ -87,11 +89,13 @@ def score_log(bag: Path, relations_path: Path, out: Path, config: Optional[Path]
         raise SystemExit(f"error: the replay of {bag} failed")
     wall_seconds = time.monotonic() - start
     trajectory = read_trajectory(tum)
-    relations = np.loadtxt(relations_path)
-    translation, rotation = relation_errors(trajectory, relations)
+    has_relations = reference.suffix == ".relations"
+    errors = relation_errors if has_relations else aligned_errors
+    translation, rotation = errors(trajectory, np.loadtxt(reference))
     return Score(
-        log=relations_path.stem,
-        relations=len(relations),
+        log=reference.stem,
+        kind="relations" if has_relations else "poses",
+        count=len(translation),
         translation_mean=float(translation.mean()),
         translation_std=float(translation.std()),
         rotation_mean=float(rotation.mean()),
@@ -119,6 +123,19 @@ def relation_errors(trajectory: np.ndarray, relations: np.ndarray) -> Tuple[np.n
     estimated = _relative_poses(first, second)
     error = _relative_poses(relations[:, [2, 3, 7]], estimated)
     return np.hypot(error[:, 0], error[:, 1]), np.abs(wrap(error[:, 2]))
+
+
+def aligned_errors(trajectory: np.ndarray, truth: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+    """Translational (metres) and rotational (radians) error of each pose after the best rigid alignment.
+
+    ``trajectory`` and ``truth``: (N, 4) and (M, 4), rows ``t x y yaw``; each stamp of ``truth`` is needed.
+    """
+    estimated = _poses_at(trajectory, truth[:, 0])
+    (mine, real) = (rows[:, 0] + 1j * rows[:, 1] for rows in (estimated, truth[:, 1:]))
+    mine, real = mine - mine.mean(), real - real.mean()
+    turn = np.angle(np.vdot(mine, real))
+    rotation = wrap(estimated[:, 2] + turn - truth[:, 3])
+    return np.abs(mine * np.exp(1j * turn) - real), np.abs(rotation)
 
 
 def _poses_at(trajectory: np.ndarray, stamps: np.ndarray) -> np.ndarray:
@@ -158,14 +175,14 @@ def draw(stem: Path) -> None:
 
 
 def _table(scores: List[Score]) -> Table:
-    table = Table(title="relations: error as mean +- standard deviation")
-    headings = ("log", "relations", "translation, m", "rotation, deg", "CPU, s", "wall, s", "log, s", "MB")
+    table = Table(title="error as mean +- standard deviation")
+    headings = ("log", "compared", "translation, m", "rotation, deg", "CPU, s", "wall, s", "log, s", "MB")
     for heading in headings:
         table.add_column(heading, justify="right")
     for score in scores:
         table.add_row(
             score.log,
-            str(score.relations),
+            f"{score.count} {score.kind}",
             f"{score.translation_mean:.4f} +- {score.translation_std:.4f}",
             f"{np.degrees(score.rotation_mean):.3f} +- {np.degrees(score.rotation_std):.3f}",
             f"{score.cpu_seconds:.1f}",
@@ -178,7 +195,7 @@ def _table(scores: List[Score]) -> Table:
 
 def _options() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("folders", nargs="+", type=Path, metavar="LOGS", help="folders of bags and relations")
+    parser.add_argument("folders", nargs="+", type=Path, metavar="LOGS", help="folders of bags and truth")
     parser.add_argument("--out", type=Path, default=Path("runs/slam"), help="default: runs/slam")
     parser.add_argument("--config", type=Path, help="parameters of slam_gmapping, for all logs")
     return parser.parse_args()

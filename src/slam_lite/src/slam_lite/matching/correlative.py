@@ -14,7 +14,7 @@ import numba
 import numpy as np
 
 from planar import Pose2, wrap
-from slam_lite.matching.local_map import OPPOSED, LocalMap, are_far, cell_of, turned_cosine
+from slam_lite.matching.local_map import OPPOSED, LocalMap, are_far, cell_of, turned_cosine, unpacked
 from slam_lite.point_cloud import PointCloud
 
 
@@ -76,7 +76,7 @@ def search_exhaustively(
         Best pose of the base in the frame of the local map.
     """
     best = _search_exhaustively(
-        local_map.layers,
+        *local_map.packed_layers,
         cloud.points_xy,
         local_map.to_grid(guess),
         max(1, round(window.distance / (2.0 * local_map.resolution))),
@@ -109,11 +109,12 @@ def score_poses(
         (N,), 0 to 1.
     """
     in_grid = np.array([local_map.to_grid(pose) for pose in poses])
-    return _scores(local_map.layers, cloud.points_xy, cloud.normals_xy, in_grid, match_sides)
+    return _scores(*local_map.packed_layers, cloud.points_xy, cloud.normals_xy, in_grid, match_sides)
 
 
 @numba.njit(cache=True, nogil=True)
-def _scores(layers, points, normals, poses, match_sides):
+def _scores(fine, coarse, geometry, points, normals, poses, match_sides):
+    layers = unpacked(fine, coarse, geometry)
     found = np.empty(len(poses))
     for i in range(len(poses)):
         total, c, s = 0, math.cos(poses[i, 2]), math.sin(poses[i, 2])
@@ -138,8 +139,11 @@ def _is_opposed(layer, row, col, normal, c, s):
 
 
 @numba.njit(cache=True, nogil=True)
-def _search_exhaustively(layers, points, guess, steps, angle_steps, step_chi, angle_chi, share):
-    (_, likelihood, _, _, resolution, _), (_, coarse_likelihood, _, _, coarse, shift) = layers
+def _search_exhaustively(
+    fine, coarse, geometry, points, guess, steps, angle_steps, step_chi, angle_chi, share
+):
+    layers = unpacked(fine, coarse, geometry)
+    (_, likelihood, _, _, resolution, _), (_, coarse_likelihood, _, _, coarse_resolution, shift) = layers
     rows, cols = likelihood.shape
     is_far = are_far(layers, points, guess)
     near, far = points[~is_far], points[is_far]
@@ -152,7 +156,7 @@ def _search_exhaustively(layers, points, guess, steps, angle_steps, step_chi, an
         for j in range(-steps, steps + 1):
             for i in range(-steps, steps + 1):
                 x, y = guess[0] + 2 * i * resolution, guess[1] + 2 * j * resolution
-                total = _sum_at(coarse_likelihood, far, x + shift[0], y + shift[1], yaw, coarse)
+                total = _sum_at(coarse_likelihood, far, x + shift[0], y + shift[1], yaw, coarse_resolution)
                 for p in range(n):
                     q, r = col[p] + 2 * i, row[p] + 2 * j
                     if 0 <= q < cols and 0 <= r < rows:

@@ -33,7 +33,9 @@ _COARSE_RESOLUTION, _COARSE_REACH = 0.2, 85.0
 # Two normals whose cosine is less than this belong to the two sides of a wall.
 OPPOSED = -0.5
 
-# A local map's four arrays, its resolution, and the offset (2,) of its corner from the finest one's.
+# The four arrays of a local map, and with its resolution and the offset (2,) of its corner from the finest
+# one's.
+LayerArrays = Tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 Layer = Tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, float, np.ndarray]
 
 
@@ -156,6 +158,17 @@ class LocalMap:
         """This map and the coarse one, as tuples for numba kernels; without a coarse map, an empty one."""
         return _layer(self, self), _layer(self.coarse_map or _EMPTY, self)
 
+    @property
+    def packed_layers(self) -> Tuple[LayerArrays, LayerArrays, np.ndarray]:
+        """``layers`` as three arguments for a kernel, which ``unpacked`` turns into layers.
+
+        numba 0.58 does not recognize the type of a tuple of more than four arrays from call to call, and
+        finds it again each time, which takes longer than a match.
+        """
+        coarse = self.coarse_map or _EMPTY
+        geometry = np.array([_geometry(self, self), _geometry(coarse, self)])
+        return _layer_arrays(self), _layer_arrays(coarse), geometry
+
     def to_grid(self, pose: Pose2) -> np.ndarray:
         """Convert a pose to ``[x, y, yaw]``, in metres from the corner of the grid."""
         return np.array([pose.x - self.corner[0], pose.y - self.corner[1], pose.yaw])
@@ -169,9 +182,19 @@ _EMPTY = LocalMap(1.0, 0.0)
 
 
 def _layer(grid: LocalMap, finest: LocalMap) -> Layer:
+    return (*_layer_arrays(grid), grid.resolution, finest.corner - grid.corner)
+
+
+def _layer_arrays(grid: LocalMap) -> LayerArrays:
     arrays = (grid.nearest, grid.likelihood, grid.points_xy, grid.normals_xy)
     nearest, likelihood, points_xy, normals_xy = (_read_only(array) for array in arrays)
-    return nearest, likelihood, points_xy, normals_xy, grid.resolution, finest.corner - grid.corner
+    return nearest, likelihood, points_xy, normals_xy
+
+
+def _geometry(grid: LocalMap, finest: LocalMap) -> Tuple[float, float, float]:
+    """Resolution, and offset of the corner from the finest map's."""
+    x, y = finest.corner - grid.corner
+    return grid.resolution, x, y
 
 
 def _read_only(array: np.ndarray) -> np.ndarray:
@@ -200,6 +223,18 @@ class Match:
 def long_range_map() -> LocalMap:
     """Create an empty local map with a coarse map that has the range of lasers outdoors."""
     return LocalMap(coarse_map=LocalMap(_COARSE_RESOLUTION, _COARSE_REACH))
+
+
+@numba.njit(cache=True, nogil=True)
+def unpacked(fine, coarse, geometry):
+    """Return the layers that ``LocalMap.packed_layers`` contains, inside a kernel.
+
+    Args:
+        fine: Arrays of the finest layer.
+        coarse: Arrays of the coarse layer.
+        geometry: (2, 3), resolution and offset of each layer.
+    """
+    return fine + (geometry[0, 0], geometry[0, 1:]), coarse + (geometry[1, 0], geometry[1, 1:])
 
 
 @numba.njit(cache=True, nogil=True)

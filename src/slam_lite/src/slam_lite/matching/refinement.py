@@ -11,7 +11,7 @@ import numba
 import numpy as np
 
 from planar import Pose2
-from slam_lite.matching.local_map import OPPOSED, LocalMap, Match, are_far, cell_of, turned_cosine
+from slam_lite.matching.local_map import OPPOSED, LocalMap, Match, are_far, cell_of, turned_cosine, unpacked
 from slam_lite.point_cloud import PointCloud
 
 _MAX_STEPS = 20
@@ -49,7 +49,7 @@ def refine(
         The match; its information includes that of the prior.
     """
     pose, information, response = _refine(
-        local_map.layers,
+        *local_map.packed_layers,
         cloud.points_xy,
         cloud.normals_xy,
         local_map.to_grid(start),
@@ -60,7 +60,8 @@ def refine(
 
 
 @numba.njit(cache=True, nogil=True)
-def _refine(layers, points, normals, start, expected, prior):
+def _refine(fine, coarse, geometry, points, normals, start, expected, prior):
+    layers = unpacked(fine, coarse, geometry)
     pose = start.copy()
     weighted_prior = prior.copy()
     far_scale = _FAR_SCALE if are_far(layers, points, start).any() else _OUTLIER_SCALE
