@@ -10,8 +10,11 @@ from laboratory.generators.fields import CylinderFields
 from laboratory.generators.motions import GROUP_SPACING, MOTIONS, RADIUS
 from laboratory.runner import run_scenario
 from laboratory.suites import load_suites
+from laboratory.tasks.odom_goal import navigation_config
 from laboratory.worlds.dynabarn import DynabarnFolder
+from move_base_lite import load_settings
 from planar import Pose2
+from sim_bridge import robot_named
 from sim_bridge.faults import Fault
 
 WORLD = """\
@@ -178,3 +181,11 @@ def test_an_invalid_world_is_reported(folder, wrong, complaint):
     (folder / "worlds/dynabarn_0.yaml").write_text(WORLD.replace(WORLD[WORLD.index("keyf") : -2], wrong))
     _, complaints = load_suites([str(folder / "scenario.yaml")])
     assert len(complaints) == 1 and complaint in complaints[0]
+
+
+def test_one_set_of_parameters_serves_static_and_moving_obstacles():
+    scenarios, _ = load_suites(["fields", "crossings"])
+    assert [scenario.parameters for scenario in scenarios] == [{}, {}]
+    control, drive = load_settings(navigation_config("jackal")).controller, robot_named("jackal").drive
+    assert (control.max_vel_x, control.acc_lim_x) == (drive.max_speed, drive.max_acceleration)
+    assert control.acc_lim_theta == drive.max_turn_acceleration
