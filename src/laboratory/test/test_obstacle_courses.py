@@ -5,12 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from laboratory.generators.crossings import CrossingCylinders
+from laboratory.generators.crossings import POLYNOMIALS, CrossingCylinders
 from laboratory.generators.fields import CylinderFields
+from laboratory.generators.motions import GROUP_SPACING, MOTIONS, RADIUS
 from laboratory.runner import run_scenario
 from laboratory.suites import load_suites
+from laboratory.tasks.odom_goal import navigation_config
 from laboratory.worlds.dynabarn import DynabarnFolder
+from move_base_lite import load_settings
 from planar import Pose2
+from sim_bridge import robot_named
 from sim_bridge.faults import Fault
 
 WORLD = """\
@@ -59,6 +63,48 @@ def test_crossing_cylinders_have_the_requested_number_and_legs():
     trajectories = CrossingCylinders(1.0, 1.0, min_count=20, max_count=22, legs=4).arena(3).world.trajectories
     assert 20 <= len(trajectories) <= 22
     assert {len(trajectory.times) for trajectory in trajectories} == {2 * 4 + 2}
+
+
+@pytest.mark.parametrize("motion", MOTIONS)
+def test_each_motion_stays_in_the_area_at_its_speed(motion):
+    source = CrossingCylinders(1.0, 1.4, 9, 9, motion=motion)
+    trajectories = source.arena(3).world.trajectories
+    assert len(trajectories) == 9
+    assert places(source.arena(3)) != places(source.arena(4))
+    for trajectory in trajectories:
+        assert np.abs(trajectory.points_xy).max() <= 10.0 + 2.0 * GROUP_SPACING
+        lengths = np.linalg.norm(np.diff(trajectory.points_xy, axis=0), axis=1)
+        speeds = lengths[lengths > 1e-6] / np.diff(trajectory.times)[lengths > 1e-6]
+        assert speeds.min() > 0.99 and speeds.max() < 1.41
+
+
+@pytest.mark.parametrize("motion", [motion for motion in MOTIONS if motion != POLYNOMIALS])
+def test_only_polynomials_jump_back_to_their_first_point(motion):
+    for trajectory in CrossingCylinders(1.0, 1.4, motion=motion).arena(3).world.trajectories:
+        assert np.allclose(trajectory.points_xy[0], trajectory.points_xy[-1], atol=1e-6)
+
+
+def test_polynomials_lead_from_border_to_border_as_dynabarns():
+    # The 87 trajectories of the four hard worlds that we have: 11 keyframes, 60 m and at most 1.95 m/s.
+    source = CrossingCylinders(1.5, 1.9, 60, 60, motion=POLYNOMIALS, orders=(4, 6))
+    trajectories = source.arena(0).world.trajectories
+    for trajectory in trajectories:
+        assert np.abs(trajectory.points_xy[[0, -1]]).max(axis=1) == pytest.approx(10.0)
+    lengths = [np.linalg.norm(np.diff(each.points_xy, axis=0), axis=1).sum() for each in trajectories]
+    assert 50.0 < np.mean(lengths) < 75.0
+    assert 10.0 < np.mean([len(each.times) for each in trajectories]) < 13.0
+
+
+def test_what_comes_out_of_doors_does_not_pass_through_walls():
+    world = CrossingCylinders(1.0, 1.0, motion="through_doors").arena(5).world
+    walls = [body for body in world.bodies if body.name.startswith("door_wall")]
+    assert len(walls) == 8
+    for trajectory in world.trajectories:
+        points_xy = np.array([trajectory.at(stamp) for stamp in np.arange(0.0, 60.0, 0.1)])
+        for body in walls:
+            half = 0.5 * np.array(body.collisions[0].shape.size[:2])
+            beyond = np.maximum(np.abs(points_xy - body.pose_in_world[:2, 3]) - half, 0.0)
+            assert np.hypot(*beyond.T).min() > RADIUS
 
 
 @pytest.fixture
@@ -110,6 +156,22 @@ def test_a_robot_does_not_drive_on_inputs_that_it_cannot_trust(folder, fault, co
 @pytest.mark.parametrize(
     ("wrong", "complaint"),
     [
+        ("motion: zigzag", "motion must be one of straight, polynomials, stop_and_go"),
+        ("motion: circles, legs: 2", "legs must be absent: it belongs to the motion straight"),
+        ("motion: circles, orders: [1, 2]", "orders must be absent: it belongs to the motion polynomials"),
+        ("motion: polynomials, orders: [3, 2]", "orders must be two whole numbers from 1 to 9"),
+    ],
+)
+def test_a_wrong_motion_is_reported(folder, wrong, complaint):
+    text = SCENARIO.replace("{dynabarn: worlds}", f"{{crossings: {{speed: [0.5, 1.0], {wrong}}}}}")
+    (folder / "scenario.yaml").write_text(text)
+    _, complaints = load_suites([str(folder / "scenario.yaml")])
+    assert len(complaints) == 1 and f"scenario.yaml:1: world.crossings.{complaint}" in complaints[0]
+
+
+@pytest.mark.parametrize(
+    ("wrong", "complaint"),
+    [
         ("keyframes: [[0, 3, 1], [0, 3, -1]]", "slow::link: a trajectory needs increasing times"),
         ("keyframes: [[0, 3]]", "keyframes must be lists of 3 numbers"),
         ("keyframes: [[0, 3, x]]", "keyframes must be lists of 3 numbers"),
@@ -119,3 +181,11 @@ def test_an_invalid_world_is_reported(folder, wrong, complaint):
     (folder / "worlds/dynabarn_0.yaml").write_text(WORLD.replace(WORLD[WORLD.index("keyf") : -2], wrong))
     _, complaints = load_suites([str(folder / "scenario.yaml")])
     assert len(complaints) == 1 and complaint in complaints[0]
+
+
+def test_one_set_of_parameters_serves_static_and_moving_obstacles():
+    scenarios, _ = load_suites(["fields", "crossings"])
+    assert [scenario.parameters for scenario in scenarios] == [{}, {}]
+    control, drive = load_settings(navigation_config("jackal")).controller, robot_named("jackal").drive
+    assert (control.max_vel_x, control.acc_lim_x) == (drive.max_speed, drive.max_acceleration)
+    assert control.acc_lim_theta == drive.max_turn_acceleration

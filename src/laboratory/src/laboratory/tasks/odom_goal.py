@@ -87,6 +87,7 @@ class OdomGoalDrive(EpisodeHooks):
 
     Attributes:
         observer: Collisions and true poses, from the first scan on.
+        start_stamp: Simulated time at which the goal was sent [s].
     """
 
     def __init__(
@@ -101,7 +102,7 @@ class OdomGoalDrive(EpisodeHooks):
         hooks = self.observer, self, navigation
         self._episode = Episode(simulation, navigation.period, faults=faults, hooks=hooks)
         self._task, self._goal = task, start @ task.goal
-        self._start_stamp = 0.0
+        self.start_stamp = 0.0
         self._end: Optional[Tuple[str, str]] = None
 
     def run(self, seconds: float) -> Tuple[str, str]:
@@ -109,7 +110,7 @@ class OdomGoalDrive(EpisodeHooks):
         step = self._episode.step()
         while step.scan is None:
             step = self._episode.step()
-        self._start_stamp = step.stamp
+        self.start_stamp = step.stamp
         self.observer.record(0.0, step.base_in_world)
         self._navigation.move_base.set_goal(self._task.goal)
         self._navigation.at_tick(self._episode, step)
@@ -118,14 +119,14 @@ class OdomGoalDrive(EpisodeHooks):
             if decision.status.is_final and decision.status is not Status.SUCCEEDED:
                 return FAILURE, decision.text
             stamp = self._episode.advance().stamp
-            if self._end is None and stamp - self._start_stamp >= seconds:
+            if self._end is None and stamp - self.start_stamp >= seconds:
                 return TIMEOUT, f"not done within {seconds:g} simulated seconds"
         return self._end
 
     def at_tick(self, episode: Episode, step: StepResult) -> None:
         """Record and judge a control period; its hooks precede those of navigation."""
         truth = step.base_in_world
-        self.observer.record(step.stamp - self._start_stamp, truth)
+        self.observer.record(step.stamp - self.start_stamp, truth)
         cause = collision(sorted(set(self.observer.collisions)))
         if cause:
             self._end = COLLISION, f"{cause} at {truth.x:.2f}, {truth.y:.2f}"
