@@ -37,6 +37,16 @@ def test_world_map_zones_and_mission_are_those_of_the_home(home):
     assert not given.lacks_map
 
 
+def test_the_navigation_zones_of_the_home_go_to_move_base(home):
+    assert "navigation_zones_file" not in command("--home", home).files()
+    contents = {path.name: path.read_bytes() for path in home.iterdir() if path.name != "manifest.yaml"}
+    (home / "navigation_zones.yaml").write_bytes(b"zones")
+    (home / "manifest.yaml").write_text(
+        manifest_text("test", {**contents, "navigation_zones.yaml": b"zones"})
+    )
+    assert command("--home", home).files()["navigation_zones_file"] == home / "navigation_zones.yaml"
+
+
 def test_a_part_that_is_given_precedes_that_of_the_home(home, tmp_path):
     given = command("--home", home, "--mission", "other.yaml", "--map", "slam.yaml")
     assert (given.mission.name, given.map.name, given.zones) == (

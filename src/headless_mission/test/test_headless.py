@@ -4,6 +4,7 @@ import pytest
 
 from headless_mission import EpisodeConditions, HeadlessMission
 from headless_mission.fault_comparison import TAIL
+from move_base_lite.navigator.zones import SPEED, NavigationZone, Zones
 from pick_objects import errand_mission, parse_mission
 from planar import load_map
 from planar.maps.places import load_pickup_and_dropoff
@@ -13,11 +14,13 @@ from sim_bridge.faults import Fault
 MAP = Path(__file__).resolve().parents[3] / "map"
 
 
-def run_episode(seed, *faults):
+def run_episode(seed, *faults, zones=Zones()):
     errand = errand_mission(*load_pickup_and_dropoff(MAP / "zones.yaml"))
     world, grid = load_world(MAP / "home.world"), load_map(MAP / "home.yaml")
     stage = (world, robot_named("turtlebot_lidar"), grid, errand)
-    return HeadlessMission(*stage, seed=seed, conditions=EpisodeConditions(faults=faults)).run(240.0)
+    return HeadlessMission(*stage, seed=seed, conditions=EpisodeConditions(faults=faults, zones=zones)).run(
+        240.0
+    )
 
 
 def test_a_seed_repeats_the_whole_mission_bit_for_bit_and_another_does_not():
@@ -26,6 +29,13 @@ def test_a_seed_repeats_the_whole_mission_bit_for_bit_and_another_does_not():
     assert first.trajectory_hash != other.trajectory_hash
     assert first.verdict.success, first.verdict.reason
     assert other.verdict.success, other.verdict.reason
+
+
+def test_the_robot_is_slow_in_a_speed_zone():
+    corners = ((-10.0, -10.0), (10.0, -10.0), (10.0, 10.0), (-10.0, 10.0))
+    slow = run_episode(1001, zones=Zones([NavigationZone("slow", SPEED, corners, 0.2)]))
+    assert slow.verdict.success, slow.verdict.reason
+    assert slow.distance_driven / slow.simulated_seconds < 0.2
 
 
 def test_delayed_scans_are_used_at_the_pose_of_their_stamp():

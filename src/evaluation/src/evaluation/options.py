@@ -92,9 +92,16 @@ class HomeOptions(WorldOptions):
         """Whether another world than the home was chosen without a map of it."""
         return self.map is HOME_MAP and self.world.resolve() != HOME_WORLD.resolve()
 
+    @property
+    def navigation_zones(self) -> Optional[Path]:
+        """File of the home's keep-out and speed zones; None if there is none. Raises SettingsError."""
+        return None if self.home is None else load_home(self.home).navigation_zones
+
     def files(self) -> Dict[str, Any]:
         """Return the files as arguments of launch files."""
-        return {"map_file": self.map.resolve()}
+        zones = self.navigation_zones
+        limits = {} if zones is None else {"navigation_zones_file": zones.resolve()}
+        return {"map_file": self.map.resolve(), **limits}
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from typing import Any, Mapping, Optional, Sequence
 from headless_mission.encoding import Encoding, ExactValues
 from move_base_lite import NavigatorSettings, load_settings
 from move_base_lite.control import check_local_planner
+from move_base_lite.navigator.zones import Zones
 from planar import Pose2
 from sim_bridge import SimulationSettings
 from sim_bridge.faults import Fault
@@ -27,6 +28,7 @@ class EpisodeConditions:
         mission_start: Simulated time from which on the mission may start [s], as over ROS, where nodes
             connect first; None: as soon as the robot is localized and a client could have connected.
         encoding: Precision of the values that pass between components.
+        zones: Keep-out and speed zones.
     """
 
     planner: str = ""
@@ -36,6 +38,7 @@ class EpisodeConditions:
     start: Pose2 = Pose2()
     mission_start: Optional[float] = None
     encoding: Encoding = ExactValues()
+    zones: Zones = Zones()
 
     def navigation(self, config: Path) -> NavigatorSettings:
         """Read a preset and apply these conditions to it.

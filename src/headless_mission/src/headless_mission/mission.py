@@ -56,7 +56,7 @@ class HeadlessMission:
         self._simulation = simulation = Simulation(
             world, robot, conditions.simulation, seed, start, faults.wrappers
         )
-        navigation = NavigationHooks(settings, grid, encoding)
+        navigation = NavigationHooks(settings, grid, encoding, conditions.zones)
         client = EpisodeMoveBaseClient(navigation, encoding)
         self._errand = errand = ErrandHooks(mission, navigation, client, conditions.mission_start)
         self._observer = MissionObserver(simulation, navigation, errand, parcel)

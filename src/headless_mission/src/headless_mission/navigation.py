@@ -14,6 +14,7 @@ from move_base_lite import (
     Status,
 )
 from move_base_lite.move_base import TickResult
+from move_base_lite.navigator.zones import Zones
 from planar import OccupancyGrid, Pose2
 from planar.driving import DriveOutcome
 from sim_bridge import Episode, EpisodeHooks, StepResult
@@ -30,6 +31,7 @@ class NavigationHooks(EpisodeHooks):
         settings: Parameters of move_base.
         grid: Static map; None for none.
         encoding: Precision of what the robot measures.
+        zones: Keep-out and speed zones.
 
     Attributes:
         poses: Poses of the robot, as in tf.
@@ -44,9 +46,10 @@ class NavigationHooks(EpisodeHooks):
         settings: NavigatorSettings,
         grid: Optional[OccupancyGrid] = None,
         encoding: Encoding = ExactValues(),
+        zones: Zones = Zones(),
     ):
         self.poses, self._encoding = PoseHistory(), encoding
-        self.move_base = MoveBase(settings, self.poses, grid)
+        self.move_base = MoveBase(settings, self.poses, grid, zones)
         self.result = TickResult(Decision(Status.IDLE))
         self.diagnosis = ""
         self.period = 1.0 / settings.move_base.controller_frequency

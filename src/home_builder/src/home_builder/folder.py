@@ -1,6 +1,7 @@
 """Builds the folder of a home from its plan."""
 
 import io
+import math
 import tempfile
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, Tuple
@@ -15,6 +16,7 @@ from home_builder.plan.geometry import room_faces
 from home_builder.plan.model import SPEED, HomePlan, Place
 from home_builder.sdf import world_text
 from home_builder.standing import DROPOFF, PICKUP, all_places
+from pick_objects import ErrandSettings
 from planar import OccupancyGrid, save_map
 from planar.errors import FileWriteError
 from planar.files.reading import exists
@@ -41,6 +43,8 @@ EDITABLE = (ZONES, MISSION, NAVIGATION_ZONES)
 RESOLUTION = 0.05
 # Deliveries of the mission that is written, and digits of coordinates.
 MOST_DELIVERIES, DIGITS = 3, 3
+# Time for a goal, for each metre of the home's diagonal, which a path may exceed several times [s].
+SECONDS_PER_METRE = 10.0
 
 
 def build_home(plan: HomePlan, folder: Path) -> List[str]:
@@ -110,7 +114,7 @@ def _zone_files(plan: HomePlan, grid: OccupancyGrid) -> Dict[str, bytes]:
     places = all_places(plan, grid)
     files = {
         ZONES: _zones_text(places),
-        MISSION: _mission_text(plan, places),
+        MISSION: _mission_text(plan, places, grid),
     }
     if plan.zones:
         files[NAVIGATION_ZONES] = _navigation_text(plan)
@@ -131,7 +135,7 @@ def _table(entries: Mapping[str, Any]) -> str:
     return yaml.safe_dump(dict(entries), sort_keys=False, default_flow_style=None, allow_unicode=True)
 
 
-def _mission_text(plan: HomePlan, places: Mapping[str, Place]) -> str:
+def _mission_text(plan: HomePlan, places: Mapping[str, Place], grid: OccupancyGrid) -> str:
     """A tour of deliveries between rooms, the largest first, or from pick-up to drop-off."""
     rooms = [face.name for face in room_faces(plan) if face.name in places][: MOST_DELIVERIES + 1]
     stops = rooms if len(rooms) > 1 else [PICKUP, DROPOFF]
@@ -140,7 +144,10 @@ def _mission_text(plan: HomePlan, places: Mapping[str, Place]) -> str:
         {"object": name, "from": start, "to": end} for name, (start, end) in zip(names, _pairs(stops))
     ]
     head = "# Deliveries between the places of zones.yaml; docs/reference/missions.md explains every key.\n"
-    return head + _table({"name": plan.name, "deliveries": deliveries})
+    patience = SECONDS_PER_METRE * math.hypot(grid.rows, grid.cols) * grid.resolution
+    is_large = patience > ErrandSettings().goal_timeout
+    settings = {"settings": {"goal_timeout": float(math.ceil(patience))}} if is_large else {}
+    return head + _table({"name": plan.name, **settings, "deliveries": deliveries})
 
 
 def _pairs(stops: List[str]) -> List[Tuple[str, str]]:

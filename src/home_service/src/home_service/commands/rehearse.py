@@ -53,11 +53,16 @@ class Rehearse(MissionOptions):
     def _run_episodes(self) -> int:
         from headless_mission import EpisodeConditions, HeadlessMission, parcel_for
         from headless_mission.inputs import read_mission
+        from move_base_lite.navigator.zones import Zones, load_zones
         from sim_bridge.faults import load_faults
 
         home, successes = read_mission(self), 0
-        faulty = self.faults or self.mission
-        conditions = EpisodeConditions(self.planner, faults=() if faulty is None else load_faults(faulty))
+        faulty, limits = self.faults or self.mission, self.navigation_zones
+        conditions = EpisodeConditions(
+            self.planner,
+            faults=() if faulty is None else load_faults(faulty),
+            zones=Zones() if limits is None else load_zones(limits),
+        )
         stage = (home.world, home.robot, home.grid, home.mission)
         for seed in range(self.seed, self.seed + self.runs):
             parcel = None if self.mission else parcel_for(home.mission)
