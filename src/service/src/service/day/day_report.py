@@ -134,7 +134,7 @@ def _row(task: ServiceTask) -> Tuple[str, ...]:
 
 
 def _why_late(task: ServiceTask) -> str:
-    """Return why a task that was done was late, as far as its times tell."""
+    """Return why a task that was done was late, as far as its times show."""
     if not task.is_late or task.started_at is None or task.request.deadline is None:
         return ""
     waited = task.started_at - task.request.release

@@ -26,7 +26,7 @@ FURNITURE_CLEARANCE = 1.0
 
 @dataclass(frozen=True)
 class FurnitureMove:
-    """A model that somebody moves.
+    """A model that a person moves.
 
     Attributes:
         stamp: Unix time [s].
