@@ -12,6 +12,7 @@ import argparse
 import statistics
 import sys
 import time
+from typing import Dict, List
 
 from auto_docking_lite.poses import pose_when_docked
 from evaluation.options import HOME_WORLD
@@ -34,7 +35,7 @@ def main():
     episode, scene = Episode(simulation, 0.1), simulation.scene
     while not episode.idle(scene.stamp + 1.0):
         episode.advance()
-    factors = {"skipped": [], "stepped": []}
+    factors: Dict[str, List[float]] = {"skipped": [], "stepped": []}
     for _ in range(options.hours):
         begin = time.process_time()
         assert episode.idle(scene.stamp + HOUR), "the robot moves"

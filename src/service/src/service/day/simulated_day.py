@@ -132,7 +132,8 @@ class SimulatedDay(EpisodeHooks):
         if self._robot.is_moving:
             return
         now, due = self.now, [until, self._service.wakes_at(self.now)]
-        due += [each.stamp for each in (*self._requests[:1], *self._furniture[:1]) if each.stamp > now]
+        coming = [each.stamp for each in self._requests[:1]] + [each.stamp for each in self._furniture[:1]]
+        due += [stamp for stamp in coming if stamp > now]
         if min(due) - now >= SHORTEST_IDLE and self._episode.idle(min(due) - self._origin):
             self.record.idle_seconds += self.now - now
 
