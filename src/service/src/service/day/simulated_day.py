@@ -50,6 +50,7 @@ class SimulatedDayRecord(DayRecord):
         contacts: Names of what the robot collided with by its own fault.
         empty_at: Unix time at which the battery was empty [s]; None if it never was.
         idle_seconds: Simulated time that was skipped [s].
+        end: Unix time at which the day ended [s].
     """
 
     track: List[Tuple[float, float, float, float, float]] = field(default_factory=list)
@@ -58,6 +59,7 @@ class SimulatedDayRecord(DayRecord):
     contacts: List[str] = field(default_factory=list)
     empty_at: Optional[float] = None
     idle_seconds: float = 0.0
+    end: float = 0.0
 
 
 class SimulatedDay(EpisodeHooks):
@@ -110,7 +112,7 @@ class SimulatedDay(EpisodeHooks):
         while self.now < until and self.record.empty_at is None:
             self._episode.advance()
             self._skip_idle_time(until)
-        self.record.contacts = sorted(set(self._observer.collisions))
+        self.record.contacts, self.record.end = sorted(set(self._observer.collisions)), self.now
         return self.record
 
     def at_tick(self, episode: Episode, step: StepResult) -> None:
