@@ -67,6 +67,7 @@ def test_requests_are_carried_out_and_the_time_between_them_is_skipped():
     assert [task.status for task in first.ended] == [TaskStatus.COMPLETED]
     assert len(first.kept) == 1 and not first.contacts and first.empty_at is None
     assert first.idle_seconds > 5.0 * HOUR
+    assert first.end == pytest.approx(MIDNIGHT + 6.0 * HOUR, abs=0.2)
     assert "attic" in first.refused[0]
     assert first.activities[-1][1] == "charging"
     assert first.track == second.track and first.log == second.log

@@ -58,6 +58,9 @@ class Scene:
         doors: Doors.
     """
 
+    _parking: Parking
+    _physics_steps: int
+
     def __init__(
         self,
         world: World,

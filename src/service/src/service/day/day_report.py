@@ -43,7 +43,7 @@ def day_report(record: SimulatedDayRecord, grid: OccupancyGrid, midnight: float,
         title: Heading.
     """
     track = np.array(record.track).reshape(-1, 5)
-    end = max(float(track[-1, 0]) - midnight if len(track) else 0.0, 1.0)
+    end = max(record.end - midnight, 1.0)
     charge = np.column_stack(((track[:, 0] - midnight) / HOUR, 100.0 * track[:, 4]))
     battery = chart(
         "Battery over the hours of the day", "%", (ChartLine("", "estimate", charge),), end / HOUR, "h"
@@ -134,7 +134,7 @@ def _row(task: ServiceTask) -> Tuple[str, ...]:
 
 
 def _why_late(task: ServiceTask) -> str:
-    """Return why a task that was done was late, as far as its times tell."""
+    """Return why a task that was done was late, as far as its times show."""
     if not task.is_late or task.started_at is None or task.request.deadline is None:
         return ""
     waited = task.started_at - task.request.release

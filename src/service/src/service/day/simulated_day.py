@@ -26,7 +26,7 @@ FURNITURE_CLEARANCE = 1.0
 
 @dataclass(frozen=True)
 class FurnitureMove:
-    """A model that somebody moves.
+    """A model that a person moves.
 
     Attributes:
         stamp: Unix time [s].
@@ -50,6 +50,7 @@ class SimulatedDayRecord(DayRecord):
         contacts: Names of what the robot collided with by its own fault.
         empty_at: Unix time at which the battery was empty [s]; None if it never was.
         idle_seconds: Simulated time that was skipped [s].
+        end: Unix time at which the day ended [s].
     """
 
     track: List[Tuple[float, float, float, float, float]] = field(default_factory=list)
@@ -58,6 +59,7 @@ class SimulatedDayRecord(DayRecord):
     contacts: List[str] = field(default_factory=list)
     empty_at: Optional[float] = None
     idle_seconds: float = 0.0
+    end: float = 0.0
 
 
 class SimulatedDay(EpisodeHooks):
@@ -110,7 +112,7 @@ class SimulatedDay(EpisodeHooks):
         while self.now < until and self.record.empty_at is None:
             self._episode.advance()
             self._skip_idle_time(until)
-        self.record.contacts = sorted(set(self._observer.collisions))
+        self.record.contacts, self.record.end = sorted(set(self._observer.collisions)), self.now
         return self.record
 
     def at_tick(self, episode: Episode, step: StepResult) -> None:
@@ -132,7 +134,8 @@ class SimulatedDay(EpisodeHooks):
         if self._robot.is_moving:
             return
         now, due = self.now, [until, self._service.wakes_at(self.now)]
-        due += [each.stamp for each in (*self._requests[:1], *self._furniture[:1]) if each.stamp > now]
+        coming = [each.stamp for each in self._requests[:1]] + [each.stamp for each in self._furniture[:1]]
+        due += [stamp for stamp in coming if stamp > now]
         if min(due) - now >= SHORTEST_IDLE and self._episode.idle(min(due) - self._origin):
             self.record.idle_seconds += self.now - now
 
