@@ -299,7 +299,6 @@ def run_command(
     except RunInterruptedError as error:
         failure, is_interrupted = str(error), True
     record = run.observer.record
-    record.measure_distances()
     verdict = _verdict_of(run, failure, is_home_service_script(about["script"]), options)
     errors = find_log_errors(folder / "log")
     found = {
@@ -313,8 +312,8 @@ def run_command(
         "left_out": workspace.missing,
         "complaints": errors,
     }
-    always = {"command": "run_project", "versions": versions(), "missing": []}
-    path = write_result(folder, {**always, **about, **found})
+    about = {**about, "command": "run_project"}
+    path = write_result(folder, {"versions": versions(), "missing": [], **about, **found})
     _report(display, verdict, record, errors)
     display.print(f"result in {path}, a log of each window in {folder / 'log'}")
     return INTERRUPTED if is_interrupted else 0 if verdict.success else FAILURE
@@ -323,6 +322,7 @@ def run_command(
 def _verdict_of(
     run: ProjectRun, failure: Optional[str], requires_goals: bool, options: ProjectOptions
 ) -> Verdict:
+    run.observer.record.measure_distances()
     if run.user is None:
         limit = options.timeout if run.is_over_time else None
         return judge(run.observer.record, failure, requires_goals, options.expect, limit)

@@ -1,7 +1,7 @@
 """What a project needs, found before the build: packages, environment variables, nodes of navigation."""
 
 import re
-from typing import Callable, Container, Iterable, List
+from typing import Callable, Container, Iterable, List, Set
 
 _STARTED = re.compile(r"\b(?:roslaunch|rosrun|roscd)\s+(?:-{1,2}[\w-]+\s+)*([a-zA-Z]\w*)(?=[\s\"']|$)")
 _COMMENT = re.compile(r"(?:^|(?<=\s))#.*", re.MULTILINE)
@@ -52,9 +52,9 @@ def navigation_nodes(texts: Iterable[str]) -> List[str]:
     """Names of the nodes of localization and navigation that a project starts.
 
     Args:
-        texts: Its scripts and the launch files of its own packages.
+        texts: Its scripts and the launch files in its packages.
     """
-    found = set()
+    found: Set[str] = set()
     for text in texts:
         tags = (dict(_ATTRIBUTE.findall(tag)) for tag in _NODE.findall(text))
         found.update(tag["name"] for tag in tags if tag.get("pkg") in _NAVIGATION and "name" in tag)
