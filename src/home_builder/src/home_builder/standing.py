@@ -85,7 +85,10 @@ def all_places(plan: HomePlan, grid: OccupancyGrid) -> Dict[str, Place]:
     solids = shapely.union_all([*wall_polygons(plan.walls), *map(furniture_polygon, plan.furniture)])
     # Outside of all that is solid there is nothing to localize by.
     inside = shapely.transform(solids.convex_hull, lambda points: points - plan.start)
-    standing = StandingRoom.of_map(grid).inside(inside)
+    reached = StandingRoom.of_map(grid)
+    standing = reached.inside(inside)
+    if not len(standing.points_xy):  # the robot starts outside of a closed building
+        standing = reached
     places = {
         each.name: Place(each.name, each.x - start_x, each.y - start_y, each.yaw, each.radius)
         for each in plan.places
