@@ -47,8 +47,8 @@ def _fingerprints(source: WorldSource) -> List[Any]:
 
 
 def _first_scans(arena: Arena) -> bytes:
-    """The scans of a robot at the origin in the first 0.2 s."""
-    simulation = Simulation(arena.world)
+    """The scans of a robot at the start of an arena in the first 0.2 s."""
+    simulation = Simulation(arena.world, base_in_world=arena.start)
     try:
         episode = Episode(simulation, simulation.step_seconds)
         scans = [scan for _ in range(40) for scan in episode.step().scans]

@@ -88,7 +88,7 @@ def _arena(source: CrossingCylinders, seed: int) -> Arena:
         trajectories.append(ScriptedTrajectory(cylinder.name, times, points_xy))
     world = World(f"crossings {seed}", tuple(bodies), trajectories=tuple(trajectories))
     kind = "crossings" if source.motion == STRAIGHT else source.motion
-    return Arena(world, None, f"{kind} at {speed} m/s", GOAL_IN_ODOM.x)
+    return Arena(world, None, f"{kind} at {speed} m/s", GOAL_IN_ODOM.x, start=START)
 
 
 def _walls() -> List[Body]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Optional, Protocol, Tuple
 
-from planar import OccupancyGrid
+from planar import OccupancyGrid, Pose2
 from planar.deprecation import renamed_fields
 from planar.maps.places import NamedPlace
 from sim_bridge.doorway import Door
@@ -27,6 +27,7 @@ class Arena:
         reference_length: Length of the benchmark's reference path [m].
         places: Named poses, all reachable from the start.
         doorways: Doors that may be closed.
+        start: A free pose, from which the contract checks measure scans; tasks start at the scenario's.
     """
 
     world: World
@@ -35,6 +36,7 @@ class Arena:
     reference_length: Optional[float] = None
     places: Tuple[NamedPlace, ...] = ()
     doorways: Tuple[Door, ...] = ()
+    start: Pose2 = Pose2()
 
 
 class WorldSource(Protocol):
