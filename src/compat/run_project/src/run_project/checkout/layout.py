@@ -63,8 +63,7 @@ class Checkout:
 
     def package_of(self, file: Path) -> Optional[str]:
         """Name of the package that contains a file; None if it is in none."""
-        inside = {name: folder for name, folder in self.packages.items() if folder in file.parents}
-        return max(inside, key=lambda name: len(inside[name].parts)) if inside else None
+        return package_of(file, self.packages)
 
     def programs(self) -> List[Path]:
         """All shell scripts, and all other files that start with ``#!``."""
@@ -93,6 +92,17 @@ class Checkout:
         """Folders that contain Gazebo models, as referenced by ``model://NAME`` in worlds."""
         models = (Path(file).parent for file in self.files if Path(file).name == "model.config")
         return sorted({model.parent for model in models})
+
+
+def package_of(file: Path, packages: Mapping[str, Path]) -> Optional[str]:
+    """Name of the innermost package that contains a file; None if it is in none.
+
+    Args:
+        file: Path of the file.
+        packages: Package name -> folder, relative to the same folder as the file.
+    """
+    inside = {name: folder for name, folder in packages.items() if folder in file.parents}
+    return max(inside, key=lambda name: len(inside[name].parts)) if inside else None
 
 
 def read_checkout(root: Path) -> Checkout:

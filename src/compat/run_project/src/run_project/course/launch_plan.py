@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Dict, Iterator, Mapping, Optional, Set, Tuple
 
+from run_project.checkout.layout import package_of
 from run_project.checkout.vendored import is_vendored
 
 _COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
@@ -115,11 +116,7 @@ def _name_rank(file: str, name: str) -> Tuple[bool, bool, int, str]:
 
 
 def _roslaunch_arguments(file: str, packages: Mapping[str, Path]) -> str:
-    inside: Dict[str, Path] = {
-        name: folder for name, folder in packages.items() if folder in Path(file).parents
-    }
-    package = max(inside, key=lambda name: len(inside[name].parts))
-    return f"{package} {Path(file).name}"
+    return f"{package_of(Path(file), packages)} {Path(file).name}"
 
 
 def _with_required_arguments(words: str, launch: str, texts: Mapping[str, str]) -> str:

@@ -104,7 +104,7 @@ class ProjectRun:
                 rospy.set_param(name, value)
             rospy.init_node("run_project", anonymous=True, disable_signals=True, log_level=rospy.ERROR)
             if self.user is not None:
-                self.user.attach(self.observer.events)
+                self.user.attach(self.observer.events, self.observer.record.alignment)
             self.observer.start()
             if self.user is not None:
                 self.user.start()

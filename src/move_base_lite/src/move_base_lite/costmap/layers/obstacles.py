@@ -92,6 +92,12 @@ class _LocatedObservation:
     observation: Observation
     sensor_in_frame: Pose2
 
+    def sensor_in_cells(self, window: CostmapWindow) -> Tuple[float, float, float, float]:
+        """Return column and row of the sensor in a window, its height [m] and heading [rad]."""
+        sensor, resolution = self.sensor_in_frame, window.resolution
+        x, y = (sensor.x - window.origin_x) / resolution, (sensor.y - window.origin_y) / resolution
+        return x, y, self.observation.sensor_height, sensor.yaw
+
 
 class _ObservationBuffer:
     """Observations of one source that count at an update (costmap_2d: ObservationBuffer).
@@ -186,12 +192,7 @@ class ObstacleLayer(Layer):
         _integrate(
             self._costs,
             block,
-            (
-                (sensor.x - window.origin_x) / window.resolution,
-                (sensor.y - window.origin_y) / window.resolution,
-                observation.sensor_height,
-                sensor.yaw,
-            ),
+            located.sensor_in_cells(window),
             observation.directions_xy,
             observation.ranges,
             np.atleast_1d(observation.heights),

@@ -67,12 +67,7 @@ class VoxelLayer(ObstacleLayer):
             self._costs,
             self._columns,
             block,
-            (
-                (sensor.x - window.origin_x) / window.resolution,
-                (sensor.y - window.origin_y) / window.resolution,
-                observation.sensor_height,
-                sensor.yaw,
-            ),
+            located.sensor_in_cells(window),
             observation.directions_xy,
             observation.ranges,
             np.atleast_1d(observation.heights),

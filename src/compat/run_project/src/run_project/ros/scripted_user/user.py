@@ -12,7 +12,7 @@ from geometry_msgs.msg import Twist
 from sensor_msgs.msg import LaserScan
 
 from evaluation.event_stream import EventStream
-from evaluation.events import EstimateUpdated, TruthUpdated
+from evaluation.events import TruthUpdated
 from planar import PlanarError, Pose2
 from run_project.course.checks import CheckResults
 from run_project.judging.map_alignment import MapAlignment
@@ -58,10 +58,10 @@ class ScriptedUser:
         self._velocity_publisher: Optional[rospy.Publisher] = None
         self._thread = threading.Thread(target=self._run, daemon=True)
 
-    def attach(self, events: EventStream) -> None:
-        """Subscribe to events."""
+    def attach(self, events: EventStream, alignment: MapAlignment) -> None:
+        """Subscribe to events, and share the alignment of the run's record."""
         events.subscribe(TruthUpdated, self._on_truth)
-        events.subscribe(EstimateUpdated, self._on_estimate)
+        self.alignment = alignment
 
     def start(self) -> None:
         """Start the procedure. This process must be a ROS node."""
@@ -180,10 +180,6 @@ class ScriptedUser:
         if self._base is not None:
             self.total_motion += base.distance_to(self._base) + abs(_wrapped(base.yaw - self._base.yaw))
         self._base = base
-
-    def _on_estimate(self, event: EstimateUpdated) -> None:
-        if self._base is not None:
-            self.alignment.add(event.pose, self._base)
 
     def _on_scan(self, message: LaserScan) -> None:
         self._scan = message
