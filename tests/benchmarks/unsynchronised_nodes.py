@@ -130,7 +130,7 @@ def run_mission(options: argparse.Namespace, seed: int, is_busy: bool) -> Missio
         stack.callback(recorder.terminate)
         command = ["roslaunch", "-p", environment["ROS_MASTER_URI"].rpartition(":")[2]]
         command += ["home_service", "home_service.launch", *_arguments(options, seed)]
-        with open(options.log, "ab") as log:
+        with options.log.open("ab") as log:
             launch = subprocess.Popen(command, env=environment, stdout=log, stderr=subprocess.STDOUT)
         stack.callback(_stop, launch)
         deadline = time.monotonic() + START_SECONDS + RUN_SECONDS
@@ -235,7 +235,9 @@ def _free_port() -> int:
 
 def main() -> int:
     options = _options()
-    print("seed  x real time   apart [m]  end [s]  differ from [s]: truth, amcl, cmd_vel  outcome", flush=True)
+    print(
+        "seed  x real time   apart [m]  end [s]  differ from [s]: truth, amcl, cmd_vel  outcome", flush=True
+    )
     rows: List[Dict[str, Any]] = []
     for seed in options.seeds:
         busy = [options.busy > 0 and number == options.runs - 1 for number in range(options.runs)]
@@ -253,9 +255,10 @@ def main() -> int:
         )
     apart = np.array([row["distance"] for row in rows])
     same = sum(len(row["outcomes"]) == 1 for row in rows)
+    speed = np.median([speed for row in rows for speed in row["speeds"]])
     print(
         f"{same} of {len(rows)} seeds with one outcome; apart by at most 1 mm {(apart <= 1e-3).mean():.0%}, "
-        f"5 cm {(apart <= 0.05).mean():.0%}; median speed {np.median([s for row in rows for s in row['speeds']]):.2f}"
+        f"5 cm {(apart <= 0.05).mean():.0%}; median speed {speed:.2f}"
     )
     if options.json:
         options.json.write_text(json.dumps(rows, indent=2) + "\n", encoding="utf-8")
@@ -266,11 +269,15 @@ def _options() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--seeds", type=int, nargs="+", default=[0, 1, 2], help="default: 0 1 2")
     parser.add_argument("--runs", type=int, default=2, help="runs of each seed (default: 2)")
-    parser.add_argument("--busy", type=int, default=0, help="busy processes beside each last run (default: 0)")
+    parser.add_argument(
+        "--busy", type=int, default=0, help="busy processes beside each last run (default: 0)"
+    )
     parser.add_argument("--amcl", default="amcl", help="package of amcl (default: amcl)")
     parser.add_argument("--move-base", default="move_base", help="package of move_base (default: move_base)")
     parser.add_argument("--speed", default="0", help="0: as fast as the nodes keep up (default)")
-    parser.add_argument("--log", type=Path, default=Path("unsynchronised_nodes.log"), help="output of the nodes")
+    parser.add_argument(
+        "--log", type=Path, default=Path("unsynchronised_nodes.log"), help="output of the nodes"
+    )
     parser.add_argument("--json", type=Path, help="also write the table here")
     return parser.parse_args()
 

@@ -88,8 +88,9 @@ class RestBarrier:
         elif has_news and barrier.news < MOST_NEWS:
             barrier.news, barrier.quiet_since = barrier.news + 1, wall
         self._recover(wall, nodes)
-        before, barrier.busy = barrier.busy, next(
-            (name for name, rests in nodes.items() if name not in self.given_up and not rests()), None
+        before, barrier.busy = (
+            barrier.busy,
+            next((name for name, rests in nodes.items() if name not in self.given_up and not rests()), None),
         )
         if barrier.busy is not None and barrier.busy == before:
             barrier.quiet_since = wall

@@ -121,9 +121,7 @@ class TimeControl:
             return True
         reporting = {f"/{name}" for name in self._pacer.reporting}
         self._paced.set_nodes(self._lock_step.unable - reporting, self._lock_step.members | reporting)
-        return self._paced.have_rested(
-            self._scene.stamp, self._lock_step.is_answered, self._is_clock_sent
-        )
+        return self._paced.have_rested(self._scene.stamp, self._lock_step.is_answered, self._is_clock_sent)
 
     def _publish_clock(self) -> None:
         self._is_clock_due, self._is_clock_sent = False, True
