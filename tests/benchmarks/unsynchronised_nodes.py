@@ -248,9 +248,9 @@ def main() -> int:
         speeds = [round(run.speed, 2) for run in runs]
         rows.append({"seed": seed, "speeds": speeds, "outcomes": outcomes, **asdict(worst)})
         print(
-            f"{seed:4}  {' '.join(f'{speed:5.2f}' for speed in speeds)}  {worst.distance:9.4f}  {worst.end:7.2f}"
-            f"  {worst.truth_from:8.2f} {worst.estimates_from:8.2f} {worst.commands_from:8.2f}"
-            f"  {' | '.join(outcomes)}",
+            f"{seed:4}  {' '.join(f'{speed:5.2f}' for speed in speeds)}"
+            f"  {worst.distance:9.4f}  {worst.end:7.2f}  {worst.truth_from:8.2f}"
+            f" {worst.estimates_from:8.2f} {worst.commands_from:8.2f}  {' | '.join(outcomes)}",
             flush=True,
         )
     apart = np.array([row["distance"] for row in rows])
