@@ -263,7 +263,9 @@ class HomeEditorTest(unittest.TestCase):
         self.open()
         wait_until("the picture", lambda: self.page.evaluate("document.querySelector('image') !== null"))
         self.assertEqual(self.page.evaluate("plan.template.scale"), moved.scale)
-        self.assertEqual(self.page.evaluate("fetch('/' + plan.template.file).then(answer => answer.status)"), 200)
+        self.assertEqual(
+            self.page.evaluate("fetch('/' + plan.template.file).then(answer => answer.status)"), 200
+        )
         self.picture("template")
         self.hands.press_button("clear")
         self.saved(lambda plan: plan.template is None, "it is removed")
