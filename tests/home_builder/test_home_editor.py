@@ -102,10 +102,10 @@ class HomeEditorTest(unittest.TestCase):
             hands.click(where)
         hands.choose("room")
         hands.click((1, 1))
-        hands.type("kitchen")
+        hands.name("kitchen")
         hands.choose("place")
         hands.drag((7, 1.5), (7, 2.5))
-        hands.type("pickup")
+        hands.name("pickup")
         hands.choose("start")
         hands.drag((2, 2), (1.0, 2.02))
         for tool in ("keep_out", "speed"):
@@ -132,7 +132,7 @@ class HomeEditorTest(unittest.TestCase):
         for name, where in (("kitchen", (1, 1)), ("study", (5, 4))):
             hands.choose("room")
             hands.click(where)
-            hands.type(name)
+            hands.name(name)
             plan = self.saved(lambda plan, name=name: plan.rooms and plan.rooms[0].name == name, name)
         self.assertEqual(len(plan.rooms), 1)
 
@@ -358,7 +358,7 @@ class HomeEditorTest(unittest.TestCase):
         for name, where in (("bedroom", (1, 1)), ("kitchen", (5, 3))):
             hands.choose("room")
             hands.click(where)
-            hands.type(name)
+            hands.name(name)
         hands.choose("start")
         hands.drag((2, 2), (2, 2.6))
         self.saved(lambda plan: plan.start == (2.0, 2.0), "the start")

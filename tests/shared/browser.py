@@ -168,7 +168,8 @@ class Tab:
 
     def press_key(self, key, code=None, modifiers=0):
         """Press and release a key: a character, or another one with its code; modifiers: 2 Ctrl, 8 Shift."""
-        number = code or ord(key.upper())
+        # The codes of other characters, as characters, are those of keys such as Delete.
+        number = code or (ord(key.upper()) if key.isalnum() else 0)
         text = {"text": "\r" if key == "Enter" else key} if len(key) == 1 or key == "Enter" else {}
         keys = {"key": key, "windowsVirtualKeyCode": number, "modifiers": modifiers}
         self._ask("Input.dispatchKeyEvent", type="keyDown", **keys, **({} if modifiers & ~8 else text))

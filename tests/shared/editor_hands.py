@@ -3,6 +3,7 @@
 import time
 
 from browser import Tab
+from waiting import wait_until
 
 # Keys that are no characters, with their codes in browsers.
 CODES = {"Escape": 27, "Enter": 13, "Delete": 46, "Backspace": 8}
@@ -60,6 +61,12 @@ class EditorHands:
         for character in text:
             self.page.press_key(character)
         self.key("Enter")
+
+    def name(self, text: str) -> None:
+        """Type the name of what was just added, once its field has the focus."""
+        has_focus = "document.activeElement.dataset.field === 'name'"
+        wait_until("the field of the name", lambda: self.page.evaluate(has_focus))
+        self.type(text)
 
     def write(self, field: str, value: str) -> None:
         """Replace the value of a field."""
