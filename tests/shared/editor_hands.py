@@ -1,6 +1,7 @@
 """A person at the editor of homes: the mouse and the keys of a page."""
 
 import time
+from typing import Iterator
 
 from browser import Tab
 from waiting import wait_until
@@ -89,3 +90,29 @@ class EditorHands:
 
     def _pause(self) -> None:
         time.sleep(self._pace)
+
+
+WALLS = ((0, 0), (8, 0), (8, 6), (0, 6), (0, 0), (4, 0), (4, 6))
+FURNITURE = (("bed", (1.3, 5)), ("table", (6, 4.8)), ("sofa", (6, 0.7)), ("plant", (7.5, 1.5)))
+
+
+def draw_home(hands: EditorHands) -> Iterator[None]:
+    """Draw a home of two rooms with a door, windows, furniture, names and a start; yields after each step."""
+    hands.choose("wall")
+    for corner in WALLS:
+        hands.click(corner)
+        yield
+    hands.key("Escape")
+    for tool, where in (("door", (4, 3)), ("window", (2, 0)), ("window", (6, 6)), *FURNITURE):
+        hands.choose(tool)
+        hands.click(where)
+        yield
+    for name, where in (("bedroom", (1, 2)), ("kitchen", (5, 2))):
+        hands.choose("room")
+        hands.click(where)
+        hands.name(name)
+        yield
+    hands.choose("start")
+    hands.drag((2, 2), (2, 2.6))
+    hands.page.wait_for("saved", "bedroom: ", "kitchen: ")
+    yield

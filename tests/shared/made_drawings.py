@@ -1,4 +1,4 @@
-"""DXF and IFC files of known walls."""
+"""DXF and IFC files and a picture of known walls."""
 
 import math
 from dataclasses import replace
@@ -9,6 +9,7 @@ import ezdxf
 import ifcopenshell
 import ifcopenshell.api
 import numpy as np
+from PIL import Image, ImageDraw
 
 from home_builder import Opening, Wall
 
@@ -125,3 +126,28 @@ def ifc_of(walls, path: Path) -> None:
             filling = run("root.create_entity", model, ifc_class=kind)
             run("feature.add_filling", model, opening=hole, element=filling)
     model.write(str(path))
+
+
+def draw_floor_plan(path: Path) -> None:
+    """A floor plan as people draw it: thick walls, a door with its arc, a window of thin lines, text."""
+    image = Image.new("L", (1000, 700), 255)
+    draw = ImageDraw.Draw(image)
+
+    def box(x1, y1, x2, y2):
+        draw.rectangle([100 + x1 * 100, 600 - y2 * 100, 100 + x2 * 100 - 1, 600 - y1 * 100 - 1], fill=20)
+
+    for x1, y1, x2, y2 in [(-0.1, -0.1, 5.25, 0.1), (6.75, -0.1, 8.1, 0.1), (-0.1, 4.9, 8.1, 5.1)]:
+        box(x1, y1, x2, y2)
+    for x1, y1, x2, y2 in [
+        (-0.1, -0.1, 0.1, 5.1),
+        (7.9, -0.1, 8.1, 5.1),
+        (3.95, 0, 4.05, 1.55),
+        (3.95, 2.45, 4.05, 5),
+    ]:
+        box(x1, y1, x2, y2)
+    for offset in (-8, 0, 8):
+        draw.line([625, 600 + offset, 775, 600 + offset], fill=60)
+    draw.arc([410, 265, 590, 445], 90, 180, fill=80)
+    draw.line([500, 445, 410, 445], fill=80)
+    draw.text((250, 300), "Kitchen 18.3 m2", fill=0)
+    image.save(path)

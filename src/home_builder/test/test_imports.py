@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from made_drawings import dxf_of, ifc_of
-from PIL import Image, ImageDraw
+from made_drawings import draw_floor_plan, dxf_of, ifc_of
+from PIL import Image
 from scipy.spatial import cKDTree
 
 from home_builder import HomePlan, Opening, Wall, build_home
@@ -85,31 +85,6 @@ def test_a_map_with_an_inclined_origin_in_part_of_a_cell_is_shifted_by_less_than
     assert plan.start == (0.0, 0.0)
     xs = [x for wall in plan.walls for x, _ in (wall.start, wall.end)]
     assert min(xs) == pytest.approx(-1.013 + 0.025, abs=0.05)
-
-
-def draw_floor_plan(path: Path, scale: float = 0.01) -> None:
-    """A floor plan as people draw it: thick walls, a door with its arc, a window of thin lines, text."""
-    image = Image.new("L", (1000, 700), 255)
-    draw = ImageDraw.Draw(image)
-
-    def box(x1, y1, x2, y2):
-        draw.rectangle([100 + x1 * 100, 600 - y2 * 100, 100 + x2 * 100 - 1, 600 - y1 * 100 - 1], fill=20)
-
-    for x1, y1, x2, y2 in [(-0.1, -0.1, 5.25, 0.1), (6.75, -0.1, 8.1, 0.1), (-0.1, 4.9, 8.1, 5.1)]:
-        box(x1, y1, x2, y2)
-    for x1, y1, x2, y2 in [
-        (-0.1, -0.1, 0.1, 5.1),
-        (7.9, -0.1, 8.1, 5.1),
-        (3.95, 0, 4.05, 1.55),
-        (3.95, 2.45, 4.05, 5),
-    ]:
-        box(x1, y1, x2, y2)
-    for offset in (-8, 0, 8):
-        draw.line([625, 600 + offset, 775, 600 + offset], fill=60)
-    draw.arc([410, 265, 590, 445], 90, 180, fill=80)
-    draw.line([500, 445, 410, 445], fill=80)
-    draw.text((250, 300), "Kitchen 18.3 m2", fill=0)
-    image.save(path)
 
 
 def test_a_picture_of_a_floor_plan_becomes_walls_a_door_and_a_window(tmp_path):

@@ -53,7 +53,8 @@ def _kind_and_size(content: bytes) -> Tuple[str, int, int]:
             kind, (width, height) = KINDS.get(image.format or ""), image.size
             if image.getexif().get(ORIENTATION, 1) >= LYING:
                 width, height = height, width
-            if width * height <= MAX_PIXELS:
+        if width * height <= MAX_PIXELS:
+            with Image.open(io.BytesIO(content)) as image:  # again, as nothing may be read before this check
                 image.verify()
     except Exception as error:  # errors of Pillow's readers have no common class
         reason = "unknown format" if "cannot identify" in str(error) else str(error)

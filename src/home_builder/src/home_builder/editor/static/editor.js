@@ -216,7 +216,7 @@ async function begin() {
   };
   for (const [name, action] of Object.entries(actions)) $(name).addEventListener("click", action);
   $("template").addEventListener("change", event => loadTemplate(event.target.files[0]));
-  window.addEventListener("resize", draw);
+  new ResizeObserver(draw).observe(svg);  // the header grows with long messages
   window.addEventListener("beforeunload", event => { if (isStale || saving) event.preventDefault(); });
   choose("select");
   showJudged();
