@@ -193,8 +193,11 @@ class _Handler(BaseHTTPRequestHandler):
         }
         for name, value in {**fixed, **headers}.items():
             self.send_header(name, value)
-        self.end_headers()
-        self.wfile.write(content)
+        try:
+            self.end_headers()
+            self.wfile.write(content)
+        except ConnectionError:  # the tab was closed meanwhile
+            self.close_connection = True
 
     def log_message(self, format: str, *args: Any) -> None:  # noqa: A002
         """Requests are not logged."""
