@@ -115,6 +115,7 @@ class Tab:
         self._socket = connect(address, max_size=None, open_timeout=ANSWER_SECONDS)
         self._numbers = itertools.count(1)
         self.errors, self.requests = [], []
+        self._counts_time = False
         for domain in ("Runtime", "Log", "Network", "Page"):
             self._ask(f"{domain}.enable")
         size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
@@ -266,6 +267,14 @@ class Tab:
         self.evaluate("document.activeElement.blur()")
         # A timer of the page: a busy page delays its messages and this timer alike.
         self.evaluate(f"new Promise((done) => setTimeout(done, {TYPING_SECONDS * 1000}))")
+
+    def thread_seconds(self):
+        """Return the CPU time that the main thread of the page has spent in tasks [s]."""
+        if not self._counts_time:
+            self._ask("Performance.enable", timeDomain="threadTicks")
+            self._counts_time = True
+        metrics = self._ask("Performance.getMetrics")["metrics"]
+        return next(each["value"] for each in metrics if each["name"] == "TaskDuration")
 
     def screenshot(self, path):
         picture = self._ask("Page.captureScreenshot", format="png")["data"]

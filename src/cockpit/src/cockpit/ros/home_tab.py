@@ -22,14 +22,14 @@ HINT = (
 )
 # Beside the column of the panels; above the canvas of the view.
 FRAME = (
-    '<a href="{url}" target="_blank" rel="noopener" style="margin:0 12px">open it in a tab of its own</a>'
+    '<a href="{url}" target="_blank" rel="noopener" style="margin:0 12px">open it in another tab</a>'
     '<iframe title="Home editor" src="{url}" style="position:fixed;left:0;top:0;z-index:5;border:0;'
     f'width:calc(100vw - {WIDTH}px);height:100vh;background:white"></iframe>'
 )
 
 
 class HomeTab:
-    """Starts the editor as a program of its own, and shows its page.
+    """Starts the editor as a child process, and shows its page.
 
     Args:
         graph: Client of the ROS graph.
@@ -68,7 +68,7 @@ class HomeTab:
         """Start, show or end the editor, in the thread of the cockpit, as programs end with their thread.
 
         Raises:
-            CockpitError: It does not start; the text says why.
+            CockpitError: It does not start; the text has the reason.
         """
         wanted, self._wanted = self._wanted, None
         if wanted is not None:

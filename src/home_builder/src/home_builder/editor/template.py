@@ -44,7 +44,7 @@ def save_template(folder: Path, content: bytes) -> Template:
 
 
 def _kind_and_size(content: bytes) -> Tuple[str, int, int]:
-    """Return suffix, width and height of a picture, turned as its camera says. Raises EditorError."""
+    """Return suffix, width and height of a picture, upright by its EXIF data. Raises EditorError."""
     from PIL import Image
 
     Image.MAX_IMAGE_PIXELS = None  # the limit here is stated in the message
