@@ -18,7 +18,7 @@ function showFields() {
   if (!item) return field("name", plan.name, value => { plan.name = value || "home"; });
   if (item.end) field("length", rounded(wallLength(item)), value => { if (value > 0) item.end = alongWall(item, value).map(rounded); });
   for (const [name, value] of Object.entries(item)) {
-    if (name === "yaw") field("yaw, degrees", rounded(value * 180 / Math.PI), degrees => { item.yaw = rounded(wrapped(degrees * Math.PI / 180)); });
+    if (name === "yaw") field("yaw, degrees", Math.round(value * 18000 / Math.PI) / 100, degrees => { item.yaw = rounded(wrapped(degrees * Math.PI / 180)); });
     else if (name === "size") ["width", "depth", "height"].forEach((each, k) => field(each, value[k], side => { if (side > 0) item.size[k] = side; }));
     else if (typeof value === "number" || name === "name") field(name, value, given => { item[name] = given; });
   }
