@@ -8,7 +8,7 @@ ROOT = Path(__file__).resolve().parent
 # Folders of tests/ with unit tests; scripts in the others are run by .test files.
 UNIT_FOLDERS = ("runner", "repository", "fuzz", "conformance")
 sys.path[:0] = [str(path) for path in sorted(ROOT.glob("src/**/src")) if path.is_dir()]
-sys.path[:0] = [str(ROOT / "tests" / folder) for folder in ("runner", "repository", "conformance")]
+sys.path[:0] = [str(ROOT / "tests" / folder) for folder in ("runner", "repository", "conformance", "shared")]
 sys.path[1:1] = [str(path) for path in sorted(ROOT.glob("src/*/test")) if path.is_dir()]
 pytest_plugins = ["rostest_plugin"]
 # Only the development set-up installs Hypothesis.

@@ -10,11 +10,12 @@ buildings. Other files that build_home.sh reads get missions only; pictures need
 """
 
 import argparse
+import json
 import sys
 import tempfile
 import time
 from pathlib import Path
-from typing import Iterator, Optional, Tuple
+from typing import Any, Dict, Iterator, List, Optional, Tuple
 
 import numpy as np
 from helpers.command_line import seeds
@@ -41,35 +42,41 @@ PASSAGE, MIDDLE, MIN_AREA = 0.2, 0.5, 0.25
 
 def main() -> int:
     options = _options()
-    overlaps, rooms, successes, missions = [], [0, 0], 0, 0
+    rows: List[Dict[str, Any]] = []
     for name, grid, path in _inputs(options):
-        started = time.perf_counter()
-        with tempfile.TemporaryDirectory() as folder:
-            try:
-                plan = plan_of_map(grid, name) if grid is not None else read_source(path, options.scale)
-                build_home(plan, Path(folder) / "home")
-            except PlanarError as error:
-                print(f"{name}: {error}", flush=True)
-                missions += options.missions
-                continue
-            texts = [f"{time.perf_counter() - started:.1f} s"]
-            if grid is not None:
-                made = load_map(Path(folder) / "home/home.yaml")
-                overlaps.append(overlap(grid, made, plan))
-                kept, all_rooms = rooms_kept(grid, made, plan)
-                rooms = [rooms[0] + kept, rooms[1] + all_rooms]
-                texts += [f"overlap {overlaps[-1]:.4f}", f"rooms {kept} of {all_rooms}"]
-            if options.missions:
-                verdict = mission_in(Path(folder) / "home", options.seed)
-                missions, successes = missions + 1, successes + verdict.success
-                texts.append(verdict.reason)
-        print(f"{name}: {', '.join(texts)}", flush=True)
+        rows.append({"name": name, **_row(name, grid, path, options)})
+        print(", ".join(f"{key} {value}" for key, value in rows[-1].items()), flush=True)
+        if options.json is not None:
+            options.json.write_text(json.dumps(rows, indent=1), encoding="utf-8")
+    overlaps = [row["overlap"] for row in rows if "overlap" in row]
     if overlaps:
+        kept, total = (sum(row.get(key, 0) for row in rows) for key in ("rooms_kept", "rooms"))
         figures = f"median {np.median(overlaps):.4f}, worst {min(overlaps):.4f}"
-        print(f"{len(overlaps)} maps: overlap {figures}; rooms {rooms[0]} of {rooms[1]}")
-    if missions:
-        print(f"{successes} of {missions} missions succeeded")
+        print(f"{len(overlaps)} maps: overlap {figures}; rooms {kept} of {total}")
+    if options.missions:
+        print(f"{sum(row.get('success', False) for row in rows)} of {len(rows)} missions succeeded")
     return 0
+
+
+def _row(name: str, grid: Optional[OccupancyGrid], path: Path, options: argparse.Namespace) -> Dict[str, Any]:
+    """Import and build a home, and run its mission; return the figures."""
+    started = time.perf_counter()
+    with tempfile.TemporaryDirectory() as folder:
+        home = Path(folder) / "home"
+        try:
+            plan = plan_of_map(grid, name) if grid is not None else read_source(path, options.scale)
+            build_home(plan, home)
+        except PlanarError as error:
+            return {"error": str(error)}
+        row: Dict[str, Any] = {"seconds": round(time.perf_counter() - started, 1)}
+        if grid is not None:
+            made = load_map(home / "home.yaml")
+            kept, total = rooms_kept(grid, made, plan)
+            row.update(overlap=round(overlap(grid, made, plan), 4), rooms_kept=kept, rooms=total)
+        if options.missions:
+            verdict = mission_in(home, options.seed)
+            row.update(success=verdict.success, reason=verdict.reason)
+        return row
 
 
 def _options() -> argparse.Namespace:
@@ -79,6 +86,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--offices", type=seeds, default=range(0), help="seeds of generated offices")
     parser.add_argument("--missions", action="store_true", help="also run the mission of each home")
     parser.add_argument("--scale", type=float, help="size of a pixel of pictures [m]")
+    parser.add_argument("--json", type=Path, help="also write the rows to this file")
     parser.add_argument("--seed", type=int, default=0, help="of the missions")
     return parser.parse_args()
 

@@ -115,6 +115,7 @@ class Tab:
         self._socket = connect(address, max_size=None, open_timeout=ANSWER_SECONDS)
         self._numbers = itertools.count(1)
         self.errors, self.requests = [], []
+        self._counts_time = False
         for domain in ("Runtime", "Log", "Network", "Page"):
             self._ask(f"{domain}.enable")
         size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
@@ -152,15 +153,34 @@ class Tab:
     def click_at(self, x, y):
         self.drag((x, y), (x, y))
 
-    def drag(self, start, end, steps=8):
+    def drag(self, start, end, steps=8, modifiers=0):
         """The left button pressed at ``start``, moved, and released at ``end``, pixels."""
+        held = {"button": "left", "modifiers": modifiers}
         self._mouse("mouseMoved", *start)
-        self._mouse("mousePressed", *start, button="left", clickCount=1, buttons=1)
+        self._mouse("mousePressed", *start, clickCount=1, buttons=1, **held)
         for step in range(1, steps + 1) if start != end else ():
             x, y = (a + (b - a) * step / steps for a, b in zip(start, end))
-            self._mouse("mouseMoved", x, y, button="left", buttons=1)
+            self._mouse("mouseMoved", x, y, buttons=1, **held)
             time.sleep(0.02)
-        self._mouse("mouseReleased", *end, button="left", clickCount=1)
+        self._mouse("mouseReleased", *end, clickCount=1, **held)
+
+    def move_mouse(self, x, y):
+        self._mouse("mouseMoved", x, y)
+
+    def press_key(self, key, code=None, modifiers=0):
+        """Press and release a key: a character, or another one with its code; modifiers: 2 Ctrl, 8 Shift."""
+        # The codes of other characters, as characters, are those of keys such as Delete.
+        number = code or (ord(key.upper()) if key.isalnum() else 0)
+        text = {"text": "\r" if key == "Enter" else key} if len(key) == 1 or key == "Enter" else {}
+        keys = {"key": key, "windowsVirtualKeyCode": number, "modifiers": modifiers}
+        self._ask("Input.dispatchKeyEvent", type="keyDown", **keys, **({} if modifiers & ~8 else text))
+        self._ask("Input.dispatchKeyEvent", type="keyUp", **keys)
+
+    def choose_file(self, selector, path):
+        """Choose a file in the input with this selector."""
+        root = self._ask("DOM.getDocument")["root"]["nodeId"]
+        node = self._ask("DOM.querySelector", nodeId=root, selector=selector)["nodeId"]
+        self._ask("DOM.setFileInputFiles", files=[str(path)], nodeId=node)
 
     def hold(self, text, seconds):
         """Hold the button with this text for some seconds."""
@@ -247,6 +267,14 @@ class Tab:
         self.evaluate("document.activeElement.blur()")
         # A timer of the page: a busy page delays its messages and this timer alike.
         self.evaluate(f"new Promise((done) => setTimeout(done, {TYPING_SECONDS * 1000}))")
+
+    def thread_seconds(self):
+        """Return the CPU time that the main thread of the page has spent in tasks [s]."""
+        if not self._counts_time:
+            self._ask("Performance.enable", timeDomain="threadTicks")
+            self._counts_time = True
+        metrics = self._ask("Performance.getMetrics")["metrics"]
+        return next(each["value"] for each in metrics if each["name"] == "TaskDuration")
 
     def screenshot(self, path):
         picture = self._ask("Page.captureScreenshot", format="png")["data"]

@@ -1,6 +1,7 @@
 """Folders of homes: what is built, and how its parts are tied."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -135,3 +136,15 @@ def test_the_same_plan_gives_the_same_files(home, tmp_path):
     build_home(PLAN, tmp_path / "again")
     for path in home.iterdir():
         assert path.read_bytes() == (tmp_path / "again" / path.name).read_bytes()
+
+
+def test_the_robot_starts_at_the_origin_with_the_heading_of_the_plan(home, tmp_path):
+    build_home(replace(PLAN, start_yaw=math.pi / 2.0), tmp_path / "turned")
+    straight, turned = (load_home(folder) for folder in (home, tmp_path / "turned"))
+    for x, y in ((2.0, 0.0), (-2.0, -2.0), (0.0, 0.0)):  # the door, a corner, the start
+        assert load_map(turned.map).value_at(y, -x) == load_map(straight.map).value_at(x, y)
+    before, after = (load_places(each.zones)["bed"].pose for each in (straight, turned))
+    assert (after.x, after.y) == pytest.approx((before.y, -before.x), abs=0.15)
+    assert math.sin(after.yaw - before.yaw + math.pi / 2.0) == pytest.approx(0.0, abs=0.1)
+    corners = yaml.safe_load(turned.navigation_zones.read_text())["stairs"]["corners"]
+    assert corners[0] == pytest.approx([2.0, -4.0])

@@ -3,12 +3,10 @@
 import math
 from pathlib import Path
 
-import ezdxf
-import ifcopenshell
-import ifcopenshell.api
 import numpy as np
 import pytest
-from PIL import Image, ImageDraw
+from made_drawings import draw_floor_plan, dxf_of, ifc_of
+from PIL import Image
 from scipy.spatial import cKDTree
 
 from home_builder import HomePlan, Opening, Wall, build_home
@@ -89,31 +87,6 @@ def test_a_map_with_an_inclined_origin_in_part_of_a_cell_is_shifted_by_less_than
     assert min(xs) == pytest.approx(-1.013 + 0.025, abs=0.05)
 
 
-def draw_floor_plan(path: Path, scale: float = 0.01) -> None:
-    """A floor plan as people draw it: thick walls, a door with its arc, a window of thin lines, text."""
-    image = Image.new("L", (1000, 700), 255)
-    draw = ImageDraw.Draw(image)
-
-    def box(x1, y1, x2, y2):
-        draw.rectangle([100 + x1 * 100, 600 - y2 * 100, 100 + x2 * 100 - 1, 600 - y1 * 100 - 1], fill=20)
-
-    for x1, y1, x2, y2 in [(-0.1, -0.1, 5.25, 0.1), (6.75, -0.1, 8.1, 0.1), (-0.1, 4.9, 8.1, 5.1)]:
-        box(x1, y1, x2, y2)
-    for x1, y1, x2, y2 in [
-        (-0.1, -0.1, 0.1, 5.1),
-        (7.9, -0.1, 8.1, 5.1),
-        (3.95, 0, 4.05, 1.55),
-        (3.95, 2.45, 4.05, 5),
-    ]:
-        box(x1, y1, x2, y2)
-    for offset in (-8, 0, 8):
-        draw.line([625, 600 + offset, 775, 600 + offset], fill=60)
-    draw.arc([410, 265, 590, 445], 90, 180, fill=80)
-    draw.line([500, 445, 410, 445], fill=80)
-    draw.text((250, 300), "Kitchen 18.3 m2", fill=0)
-    image.save(path)
-
-
 def test_a_picture_of_a_floor_plan_becomes_walls_a_door_and_a_window(tmp_path):
     draw_floor_plan(tmp_path / "plan.png")
     plan = import_plan(tmp_path / "plan.png", 0.01)
@@ -155,29 +128,6 @@ def test_a_home_is_imported_from_its_own_world(tmp_path):
     assert rooms(again) == pytest.approx(rooms(HomePlan(walls=WALLS)), abs=0.1)
 
 
-def dxf_of(walls, path: Path, unit: int, factor: float) -> None:
-    """Write the faces of walls, interrupted at doors, as pairs of lines."""
-    document = ezdxf.new()
-    document.units = unit
-    space = document.modelspace()
-    document.layers.add("A-WALL")
-    for wall in walls:
-        edges = sorted([0.0, wall.length, *(e for each in wall.openings for e in (each.first, each.last))])
-        across = (-math.sin(wall.yaw) * wall.thickness / 2.0, math.cos(wall.yaw) * wall.thickness / 2.0)
-        for first, last in zip(edges[::2], edges[1::2]):
-            for side in (-1, 1):
-                ends = [
-                    np.add(wall.point_at(each), np.multiply(side, across)) * factor for each in (first, last)
-                ]
-                space.add_line(*ends, dxfattribs={"layer": "A-WALL"})
-        for each in wall.openings:
-            if each.kind == "window":
-                ends = [np.multiply(wall.point_at(edge), factor) for edge in (each.first, each.last)]
-                space.add_line(*ends, dxfattribs={"layer": "WINDOWS"})
-    space.add_line((0, 0), (30 * factor, 30 * factor), dxfattribs={"layer": "DIMENSIONS"})
-    document.saveas(path)
-
-
 @pytest.mark.parametrize(("unit", "factor"), [(4, 1000.0), (6, 1.0), (1, 39.37007874)])
 def test_a_dxf_drawing_becomes_walls_within_five_centimetres(unit, factor, tmp_path):
     dxf_of(WALLS, tmp_path / "house.dxf", unit, factor)
@@ -202,54 +152,6 @@ def test_a_dxf_drawing_without_units_needs_a_scale(tmp_path):
     with pytest.raises(ImportPlanError, match="states no units; give --scale"):
         import_plan(tmp_path / "house.dxf")
     assert len(import_plan(tmp_path / "house.dxf", 0.01).walls) == 5
-
-
-def ifc_of(walls, path: Path) -> None:
-    """Write walls as extruded rectangles in millimetres, with openings that doors and windows fill."""
-    run = ifcopenshell.api.run
-    model = ifcopenshell.file(schema="IFC4")
-    run("root.create_entity", model, ifc_class="IfcProject", name="house")
-    run("unit.assign_unit", model)
-    body = run("context.add_context", model, context_type="Model")
-    body = run(
-        "context.add_context",
-        model,
-        context_type="Model",
-        context_identifier="Body",
-        target_view="MODEL_VIEW",
-        parent=body,
-    )
-    floor = run("root.create_entity", model, ifc_class="IfcBuildingStorey", name="ground")
-
-    def product(kind, wall, first, last, bottom, top, thickness):
-        made = run("root.create_entity", model, ifc_class=kind)
-        matrix = np.eye(4)
-        cos, sin = math.cos(wall.yaw), math.sin(wall.yaw)
-        matrix[:2, :2] = [[cos, -sin], [sin, cos]]
-        x, y = wall.point_at(first)
-        matrix[:3, 3] = x + sin * thickness / 2.0, y - cos * thickness / 2.0, bottom
-        run("geometry.edit_object_placement", model, product=made, matrix=matrix)
-        shape = run(
-            "geometry.add_wall_representation",
-            model,
-            context=body,
-            length=last - first,
-            height=top - bottom,
-            thickness=thickness,
-        )
-        run("geometry.assign_representation", model, product=made, representation=shape)
-        return made
-
-    for wall in walls:
-        made = product("IfcWall", wall, 0.0, wall.length, 0.0, wall.height, wall.thickness)
-        run("spatial.assign_container", model, products=[made], relating_structure=floor)
-        for each in wall.openings:
-            hole = product("IfcOpeningElement", wall, each.first, each.last, each.bottom, each.top, 0.5)
-            run("feature.add_feature", model, feature=hole, element=made)
-            kind = "IfcDoor" if each.kind == "door" else "IfcWindow"
-            filling = run("root.create_entity", model, ifc_class=kind)
-            run("feature.add_filling", model, opening=hole, element=filling)
-    model.write(str(path))
 
 
 def test_an_ifc_model_becomes_walls_within_five_centimetres(tmp_path):

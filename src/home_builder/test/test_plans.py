@@ -157,3 +157,7 @@ def test_a_problem_is_a_sentence_with_its_place(change, complaint, is_error):
 
 def test_a_place_in_a_doorway_is_allowed():
     assert texts(HomePlan(walls=HOUSE.walls, start=HOUSE.start, places=(Place("door", 4.0, 2.0),))) == []
+
+
+def test_furniture_without_walls_is_a_plan():
+    assert texts(HomePlan(furniture=(FurniturePiece("sofa", 2.0, 2.0, 0.0, (2.0, 0.9, 0.8)),))) == []

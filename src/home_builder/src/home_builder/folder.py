@@ -12,6 +12,7 @@ from PIL import Image
 from home_builder.errors import InvalidPlanError
 from home_builder.plan.checks import problems_of
 from home_builder.plan.file import plan_text
+from home_builder.plan.frames import plan_in_world
 from home_builder.plan.geometry import room_faces
 from home_builder.plan.model import SPEED, HomePlan, Place
 from home_builder.sdf import world_text
@@ -155,10 +156,9 @@ def _pairs(stops: List[str]) -> List[Tuple[str, str]]:
 
 
 def _navigation_text(plan: HomePlan) -> str:
-    x, y = plan.start
     entries: Dict[str, Dict[str, Any]] = {}
-    for zone in plan.zones:
-        corners = [[round(a - x, DIGITS), round(b - y, DIGITS)] for a, b in zone.corners]
+    for zone in plan_in_world(plan).zones:
+        corners = [[round(x, DIGITS), round(y, DIGITS)] for x, y in zone.corners]
         entries[zone.name] = {"kind": zone.kind, "corners": corners}
         if zone.kind == SPEED:
             entries[zone.name]["max_speed"] = zone.max_speed

@@ -9,6 +9,7 @@ import shapely
 from shapely.geometry import Polygon
 
 from home_builder.palette import BOX, KINDS, OUTLINE, OUTLINE_COLOUR, Triple
+from home_builder.plan.frames import plan_in_world
 from home_builder.plan.geometry import end_extensions, wall_blocks
 from home_builder.plan.model import FurniturePiece, HomePlan
 
@@ -33,17 +34,18 @@ TAIL = "  </world>\n</sdf>\n"
 
 def world_text(plan: HomePlan) -> str:
     """Return the SDF of a plan, with the start of the robot at the origin."""
+    plan = plan_in_world(plan)
     parts = [HEAD.format(name=quoteattr(plan.name))]
     parts += _walls_model(plan)
     for number, piece in enumerate(plan.furniture, 1):
-        parts += _furniture_model(plan, piece, number)
+        parts += _furniture_model(piece, number)
     return "".join([*parts, TAIL])
 
 
 def _walls_model(plan: HomePlan) -> Iterator[str]:
     if not plan.walls:
         return
-    yield f"    <model name='walls'>\n      <static>true</static>\n      <pose>{_origin(plan)}</pose>\n"
+    yield "    <model name='walls'>\n      <static>true</static>\n"
     for number, (wall, extension) in enumerate(zip(plan.walls, end_extensions(plan.walls)), 1):
         middle = wall.point_at(wall.length / 2.0)
         yield f"      <link name='wall_{number}'>\n"
@@ -57,10 +59,10 @@ def _walls_model(plan: HomePlan) -> Iterator[str]:
     yield "    </model>\n"
 
 
-def _furniture_model(plan: HomePlan, piece: FurniturePiece, number: int) -> Iterator[str]:
-    x, y = piece.x - plan.start[0], piece.y - plan.start[1]
+def _furniture_model(piece: FurniturePiece, number: int) -> Iterator[str]:
     yield f"    <model name='{piece.kind}_{number}'>\n      <static>true</static>\n"
-    yield f"      <pose>{_numbers(x, y, 0.0, 0.0, 0.0, piece.yaw)}</pose>\n      <link name='link'>\n"
+    pose = _numbers(piece.x, piece.y, 0.0, 0.0, 0.0, piece.yaw)
+    yield f"      <pose>{pose}</pose>\n      <link name='link'>\n"
     if piece.kind == OUTLINE:
         yield from _solid("outline", (0.0, 0.0, 0.0), _polyline(piece), OUTLINE_COLOUR)
         for index, (x1, y1, x2, y2) in enumerate(core_boxes(piece)):
@@ -127,10 +129,6 @@ def _cylinder(size: Triple) -> str:
 def _polyline(piece: FurniturePiece) -> str:
     points = "".join(f"<point>{_numbers(*corner)}</point>" for corner in piece.corners)
     return f"<polyline>{points}<height>{piece.size[2]:.6g}</height></polyline>"
-
-
-def _origin(plan: HomePlan) -> str:
-    return _numbers(-plan.start[0], -plan.start[1], 0.0, 0.0, 0.0, 0.0)
 
 
 def _numbers(*values: float) -> str:

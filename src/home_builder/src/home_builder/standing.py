@@ -10,6 +10,7 @@ from scipy.ndimage import label
 from shapely.ops import polylabel
 
 from home_builder.palette import OUTLINE
+from home_builder.plan.frames import plan_in_world
 from home_builder.plan.geometry import furniture_polygon, room_faces, wall_polygons
 from home_builder.plan.model import HomePlan, Place
 from planar import FREE, OccupancyGrid, SettingsError
@@ -81,18 +82,14 @@ def all_places(plan: HomePlan, grid: OccupancyGrid) -> Dict[str, Place]:
     Raises:
         SettingsError: There are fewer than two places.
     """
-    start_x, start_y = plan.start
+    plan = plan_in_world(plan)
     solids = shapely.union_all([*wall_polygons(plan.walls), *map(furniture_polygon, plan.furniture)])
     # Outside of all that is solid there is nothing to localize by.
-    inside = shapely.transform(solids.convex_hull, lambda points: points - plan.start)
     reached = StandingRoom.of_map(grid)
-    standing = reached.inside(inside)
+    standing = reached.inside(solids.convex_hull)
     if not len(standing.points_xy):  # the robot starts outside of a closed building
         standing = reached
-    places = {
-        each.name: Place(each.name, each.x - start_x, each.y - start_y, each.yaw, each.radius)
-        for each in plan.places
-    }
+    places = {each.name: each for each in plan.places}
     rooms = _room_places(plan, standing)
     for place in (*rooms, *_furniture_places(plan, standing)):
         places.setdefault(place.name, place)
@@ -105,8 +102,7 @@ def all_places(plan: HomePlan, grid: OccupancyGrid) -> Dict[str, Place]:
 def _room_places(plan: HomePlan, standing: StandingRoom) -> List[Place]:
     places = []
     for face in room_faces(plan):
-        polygon = shapely.transform(face.polygon, lambda points: points - plan.start)
-        middle = standing.inside(polygon).middle()
+        middle = standing.inside(face.polygon).middle()
         if middle is not None:
             places.append(Place(face.name, *middle))
     return places
@@ -121,7 +117,7 @@ def _furniture_places(plan: HomePlan, standing: StandingRoom) -> List[Place]:
         name = piece.name or (piece.kind if is_only_one else "")
         if not name:
             continue
-        polygon = shapely.transform(furniture_polygon(piece), lambda points: points - plan.start)
+        polygon = furniture_polygon(piece)
         distances = shapely.distance(polygon, shapely.points(standing.points_xy))
         if not len(distances) or distances.min() > REACH:
             continue

@@ -32,6 +32,7 @@ class Page:
         gui: The gui of viser, shared by all clients.
         scene: The scene of viser, shared by all clients.
         windows: The column of the main panel and the windows.
+        origin: Origin of the page.
         url: Address of the page with the token.
 
     Raises:
@@ -43,7 +44,8 @@ class Page:
         port = listening.getsockname()[1]
         shown = "127.0.0.1" if address in ("0.0.0.0", "::") else address
         access = AccessPolicy(port, (shown,))
-        self.url = f"http://{f'[{shown}]' if ':' in shown else shown}:{port}/?token={access.token}"
+        self.origin = f"http://{f'[{shown}]' if ':' in shown else shown}:{port}"
+        self.url = f"{self.origin}/?token={access.token}"
         self._on_leave: List[Callable[[int], None]] = []
         self._is_watched = threading.Event()
         # viser prints a URL without the token.

@@ -21,6 +21,7 @@ from cockpit.page.toolbar import Toolbar
 from cockpit.page.view_panel import AUTOMATIC, ViewPanel
 from cockpit.ros.drive_tab import DriveTab
 from cockpit.ros.graph import GraphClient
+from cockpit.ros.home_tab import HomeTab
 from cockpit.ros.layer_subscriptions import LayerManager
 from cockpit.ros.log_collector import LogCollector
 from cockpit.ros.tool import error_text
@@ -60,6 +61,7 @@ class CockpitController:
         self._drive_tab = DriveTab(
             self._graph, self._frames, pointer, self._world, page.notify, lambda: self._fixed
         )
+        self._home_tab = HomeTab(self._graph, page.origin)
         self._build()
         self._world.view.cut(self._view.height.value)
         self._layers = LayerManager(self._graph, self._drawer, self._warn)
@@ -77,6 +79,7 @@ class CockpitController:
         self._drive_tab.build(gui, tabs.add_tab("Drive"), toolbar, self._guarded)
         with tabs.add_tab("Tools"):
             self.toolbox = Toolbox(self._page, self._graph, self._log.entries)
+        self._home_tab.build(gui, tabs.add_tab("Home"), self._guarded)
         self._screens = CameraWindow(gui, self._page.windows)
 
     def run(self, is_over: Callable[[], bool] = rospy.is_shutdown) -> None:
@@ -93,6 +96,7 @@ class CockpitController:
                 self._warn_once(error_text(error))
             time.sleep(max(PERIOD - (time.monotonic() - began), 0.02))
         self._drive_tab.teleop.close()
+        self._home_tab.close()
         self._unsubscribe()
 
     def _prepare(self) -> None:
@@ -126,6 +130,10 @@ class CockpitController:
         self._layers.update(now)
         self._show(now)
         self.toolbox.update(now)
+        try:
+            self._home_tab.update()
+        except CockpitError as error:
+            self._warn(str(error))
 
     def _check_time(self, stamp: float) -> None:
         """Reset layers and frames if ROS time [s] has jumped back."""
@@ -145,6 +153,7 @@ class CockpitController:
         self._world.poll()
         self._view.offer_frames(tuple(self._frames.names()))
         self._drive_tab.refresh()
+        self._home_tab.refresh()
 
     def _fixed_frame(self) -> str:
         """Return the selected fixed frame or a default."""

@@ -38,6 +38,7 @@ class BuildHome:
         "address of that page (default: a free port of 127.0.0.1); implies --web",
         metavar="[ADDRESS:]PORT",
     )
+    frame_of: str = option("", "origin of a page that shows the editor inside of it", metavar="ORIGIN")
 
     def run(self) -> int:
         from home_builder.source import folder_of, read_source
@@ -65,7 +66,7 @@ class BuildHome:
 
         address = address_and_port(self.web_port or "127.0.0.1:0")
         plan = None if self.file is None else read_source(self.file, self.scale)
-        server = EditorServer(EditorSession(folder, plan), *address)
+        server = EditorServer(EditorSession(folder, plan), *address, self.frame_of)
         print(f"edit the home: {server.url}")
         print(f"every change is saved in {folder}; Ctrl-C ends", flush=True)
         server.serve_until_interrupted()

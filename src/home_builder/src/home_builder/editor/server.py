@@ -1,5 +1,6 @@
 """The HTTP server of the editor's page, with the access checks of the cockpit."""
 
+import re
 import signal
 import threading
 from http import HTTPStatus
@@ -9,22 +10,23 @@ from typing import Any, Callable, Dict, Optional, Tuple
 
 from cockpit.access import OK, AccessPolicy
 from home_builder.editor.session import EditorSession, as_json
+from home_builder.editor.template import MAX_BYTES
+from home_builder.editor.template import MEDIA as TEMPLATES
 from home_builder.errors import EditorError
 from planar import PlanarError
 
 STATIC = Path(__file__).parent / "static"
-PAGES = {
-    "/": ("editor.html", "text/html; charset=utf-8"),
-    "/editor.js": ("editor.js", "text/javascript; charset=utf-8"),
-    "/drawing.js": ("drawing.js", "text/javascript; charset=utf-8"),
-    "/editor.css": ("editor.css", "text/css; charset=utf-8"),
-}
+KINDS = {".html": "html", ".js": "javascript", ".css": "css"}
+PAGES = {f"/{path.name}": path for path in STATIC.iterdir() if path.suffix in KINDS}
+PAGES["/"] = PAGES.pop("/editor.html")
 MAX_BODY = 4 << 20
+LONGEST = {"/template": MAX_BYTES}
 # Seconds after which a connection that sends nothing is closed.
 PATIENCE = 30.0
-POLICY = (
-    "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; frame-ancestors 'none'"
-)
+POLICY = "default-src 'self'; img-src 'self' data:; style-src 'self' 'unsafe-inline'; frame-ancestors {}"
+
+
+ORIGIN = re.compile(r"https?://[\w.:\[\]-]+")
 
 
 class EditorServer:
@@ -34,16 +36,22 @@ class EditorServer:
         session: The plan.
         address: Address to bind.
         port: Port; 0 selects a free one.
+        frame_of: Origin of the page that shows this one inside of it; empty: none may.
 
     Attributes:
         url: URL of the page, with its token.
 
     Raises:
-        EditorError: The port is in use or not available.
+        EditorError: The port is in use or not available, or ``frame_of`` is no origin.
     """
 
-    def __init__(self, session: EditorSession, address: str = "127.0.0.1", port: int = 0):
+    def __init__(self, session: EditorSession, address: str = "127.0.0.1", port: int = 0, frame_of: str = ""):
         self._session = session
+        if frame_of and not ORIGIN.fullmatch(frame_of):
+            raise EditorError(
+                f"--frame-of: expected an origin such as http://127.0.0.1:8700, got {frame_of!r}"
+            )
+        self._policy = POLICY.format(frame_of or "'none'")
         self._access: Optional[AccessPolicy] = None
         try:
             self._server = ThreadingHTTPServer((address, port), self._handle)
@@ -57,7 +65,7 @@ class EditorServer:
 
     def _handle(self, *request: Any) -> BaseHTTPRequestHandler:
         assert self._access is not None  # requests come only once the server serves
-        return _Handler(*request, session=self._session, access=self._access)
+        return _Handler(*request, session=self._session, access=self._access, policy=self._policy)
 
     def serve(self) -> None:
         """Serve until ``close`` is called from another thread."""
@@ -86,12 +94,13 @@ class _Handler(BaseHTTPRequestHandler):
     Args:
         session: The plan.
         access: Decides on requests.
+        policy: Content security policy of its pages.
     """
 
     timeout = PATIENCE
 
-    def __init__(self, *args: Any, session: EditorSession, access: AccessPolicy):
-        self._session, self._access = session, access
+    def __init__(self, *args: Any, session: EditorSession, access: AccessPolicy, policy: str):
+        self._session, self._access, self._policy = session, access, policy
         super().__init__(*args)
 
     def do_GET(self) -> None:  # noqa: N802 (name of http.server)
@@ -103,21 +112,37 @@ class _Handler(BaseHTTPRequestHandler):
         if decision:
             self._send(HTTPStatus.SEE_OTHER, b"", "text/plain", {"Location": "/", "Set-Cookie": decision})
         elif path in PAGES:
-            name, kind = PAGES[path]
-            self._send(HTTPStatus.OK, (STATIC / name).read_bytes(), kind)
+            file = PAGES[path]
+            self._send(HTTPStatus.OK, file.read_bytes(), f"text/{KINDS[file.suffix]}; charset=utf-8")
         elif path == "/plan":
-            self._send(HTTPStatus.OK, as_json(self._session.state()), "application/json")
+            self._reply(lambda: as_json(self._session.state()))
+        elif path == "/map.png":
+            self._reply(self._session.map_picture, "image/png")
+        elif path.startswith("/template_"):
+            self._reply(lambda: self._session.template(path[1:]), TEMPLATES.get(Path(path).suffix[1:], ""))
         else:
             self._send(HTTPStatus.NOT_FOUND, b"no such page\n", "text/plain")
 
     def do_PUT(self) -> None:  # noqa: N802
-        """Replace the plan."""
-        self._answer({"/plan": lambda body: self._session.change(body.decode("utf-8"))})
+        """Replace the plan or its template."""
+        version = self.headers.get("If-Match")
+        self._answer(
+            {
+                "/plan": lambda body: self._session.change(body.decode("utf-8"), version),
+                "/template": self._session.set_template,
+            }
+        )
 
     def do_POST(self) -> None:  # noqa: N802
-        """Build or try the home."""
-        actions = {"/build": lambda body: self._session.build(), "/try": lambda body: self._session.try_out()}
-        self._answer(actions)
+        """Build or try the home, or trace its template."""
+        session = self._session
+        actions = {
+            "/build": session.build,
+            "/try": session.try_out,
+            "/drive": session.drive,
+            "/trace": session.trace,
+        }
+        self._answer({path: lambda body, act=act: act() for path, act in actions.items()})  # type: ignore[misc]
 
     def _answer(self, actions: Dict[str, Callable[[bytes], Dict[str, Any]]]) -> None:
         if self._decision(changes=True) is None:
@@ -127,8 +152,12 @@ class _Handler(BaseHTTPRequestHandler):
         if body is None or action is None:
             self._send(HTTPStatus.BAD_REQUEST, b'{"error": "not understood"}', "application/json")
             return
+        self._reply(lambda: as_json(action(body)))
+
+    def _reply(self, made: Callable[[], bytes], kind: str = "application/json") -> None:
+        """Send what is made, or the error that prevents it."""
         try:
-            self._send(HTTPStatus.OK, as_json(action(body)), "application/json")
+            self._send(HTTPStatus.OK, made(), kind)
         except (PlanarError, ValueError) as error:
             content = as_json({"error": str(error)})
             self._send(HTTPStatus.UNPROCESSABLE_ENTITY, content, "application/json")
@@ -136,7 +165,7 @@ class _Handler(BaseHTTPRequestHandler):
     def _body(self) -> Optional[bytes]:
         """Return the body; None if it has no valid length."""
         length = self.headers.get("Content-Length", "0")
-        if not length.isascii() or not length.isdigit() or int(length) > MAX_BODY:
+        if not length.isascii() or not length.isdigit() or int(length) > LONGEST.get(self.path, MAX_BODY):
             self.close_connection = True
             return None
         return self.rfile.read(int(length))
@@ -158,14 +187,17 @@ class _Handler(BaseHTTPRequestHandler):
             "Content-Type": kind,
             "Content-Length": str(len(content)),
             "Cache-Control": "no-store",
-            "Content-Security-Policy": POLICY,
+            "Content-Security-Policy": self._policy,
             "X-Content-Type-Options": "nosniff",
             "Referrer-Policy": "no-referrer",
         }
         for name, value in {**fixed, **headers}.items():
             self.send_header(name, value)
-        self.end_headers()
-        self.wfile.write(content)
+        try:
+            self.end_headers()
+            self.wfile.write(content)
+        except ConnectionError:  # the tab was closed meanwhile
+            self.close_connection = True
 
     def log_message(self, format: str, *args: Any) -> None:  # noqa: A002
         """Requests are not logged."""

@@ -20,7 +20,7 @@ from planar import SettingsError
 WALL_NAMES = re.compile(r"wall|wand|waende|mur|pared|muro|parede|duvar|vegg", re.IGNORECASE)
 WINDOW_NAMES = re.compile(r"window|glaz|fenster|fenetre|ventana|janela|finestr", re.IGNORECASE)
 # Distance between the two lines of a wall, and their shortest common length [m].
-THICKNESS, MIN_OVERLAP = (0.05, 0.45), 0.2
+THICKNESS, MIN_OVERLAP = (0.05, 0.6), 0.2
 # Thickness of walls that are drawn as one line, shortest such wall, uncertainty of ends [m].
 SINGLE, MIN_SINGLE, SLACK = 0.1, 0.3, 0.02
 # Most lines, and the deepest nesting of blocks.
@@ -40,11 +40,8 @@ def import_dxf(path: Path, scale: Optional[float] = None) -> HomePlan:
     Raises:
         ImportPlanError: The drawing cannot be read, states no units, or has no walls.
     """
-    document = _read(path)
-    factor = _unit(document, path) if scale is None else scale
-    entities = list(_entities(document.modelspace()))
-    on_wall_layers = [entity for entity in entities if WALL_NAMES.search(entity.dxf.layer)]
-    segments = list(_segments(on_wall_layers or entities, factor))
+    entities, factor = _drawing(path, scale)
+    segments = _wall_segments(entities, factor)
     if len(segments) > MAX_LINES:
         raise ImportPlanError(f"{path}: {len(segments)} lines are more than {MAX_LINES}")
     windows = MultiLineString(
@@ -54,7 +51,8 @@ def import_dxf(path: Path, scale: Optional[float] = None) -> HomePlan:
     joined = tuple(map(rounded, join_walls(walls, SLACK, _gaps(windows))))
     if not joined:
         raise ImportPlanError(
-            f"{path}: no walls were found; they are pairs of parallel lines on a layer named wall"
+            f"{path}: no walls were found with the unit of {factor:g} m; they are pairs of parallel lines, "
+            f"{THICKNESS[0]:g} to {THICKNESS[1]:g} m apart, on a layer named wall; --scale sets another unit"
         )
     plan = HomePlan(path.stem, joined)
     try:
@@ -63,6 +61,24 @@ def import_dxf(path: Path, scale: Optional[float] = None) -> HomePlan:
         raise ImportPlanError(
             f"{path}: {error}; with the unit of {factor:g} m; --scale sets another"
         ) from None
+
+
+def drawn_segments(path: Path, scale: Optional[float] = None) -> List[Segment]:
+    """Return the lines that may be faces of walls [m]. Arguments and exceptions are those of import_dxf."""
+    return _wall_segments(*_drawing(path, scale))
+
+
+def _drawing(path: Path, scale: Optional[float]) -> Tuple[List[Any], float]:
+    """Return lines and polylines of a drawing, and the size of its unit [m]."""
+    document = _read(path)
+    factor = _unit(document, path) if scale is None else scale
+    return list(_entities(document.modelspace())), factor
+
+
+def _wall_segments(entities: Sequence[Any], factor: float) -> List[Segment]:
+    """Return the straight lines on layers of walls, or all if there is no such layer [m]."""
+    on_wall_layers = [entity for entity in entities if WALL_NAMES.search(entity.dxf.layer)]
+    return list(_segments(on_wall_layers or entities, factor))
 
 
 def _read(path: Path) -> Any:

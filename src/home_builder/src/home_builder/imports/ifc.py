@@ -60,9 +60,7 @@ def import_ifc(path: Path) -> HomePlan:
         ImportPlanError: The file cannot be read, or has no walls.
     """
     model = _open(path)
-    floor = _floor_with_walls(model)
-    walls = [each for each in model.by_type(WALL_TYPE) if floor is None or _floor_of(each) == floor]
-    walls += [each for each in model.by_type(CURTAIN_TYPE) if floor is None or _floor_of(each) == floor]
+    walls = walls_of_floor(model)
     solids = {wall.id(): _solid(wall) for wall in walls}
     level = _level([solid for solid in solids.values() if solid is not None])
     found: List[Wall] = []
@@ -80,11 +78,18 @@ def import_ifc(path: Path) -> HomePlan:
         raise ImportPlanError(f"{path}: no walls with a geometry were found in this IFC model")
     furniture += _furniture(model, level)
     joined = _joined(found)
-    plan = HomePlan(path.stem, joined, tuple(furniture), tuple(_rooms(model, floor)))
+    plan = HomePlan(path.stem, joined, tuple(furniture), tuple(_rooms(model, _floor_with_walls(model))))
     try:
         return replace(plan, start=free_start(plan))
     except SettingsError as error:
         raise ImportPlanError(f"{path}: {error}") from None
+
+
+def walls_of_floor(model: Any) -> List[Any]:
+    """Return the walls of the lowest floor of an IFC model that has most of the walls."""
+    floor = _floor_with_walls(model)
+    walls = [*model.by_type(WALL_TYPE), *model.by_type(CURTAIN_TYPE)]
+    return [wall for wall in walls if floor is None or _floor_of(wall) == floor]
 
 
 def _open(path: Path) -> Any:

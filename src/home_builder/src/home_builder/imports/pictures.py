@@ -69,7 +69,7 @@ def _shades(path: Path) -> np.ndarray:
     """Return the grey values of a picture, transparency as white, uint8 (rows, cols), row 0 lowest."""
     import io
 
-    from PIL import Image, UnidentifiedImageError
+    from PIL import Image, ImageOps, UnidentifiedImageError
 
     Image.MAX_IMAGE_PIXELS = None  # the limit here is stated in the message
     try:
@@ -78,8 +78,9 @@ def _shades(path: Path) -> np.ndarray:
                 size = f"{image.width} x {image.height}"
                 most = f"{MAX_PIXELS // 1_000_000} million"
                 raise ImportPlanError(f"{path}: {size} pixels are more than {most}; reduce the picture")
-            opaque = Image.new("RGBA", image.size, "white")
-            opaque.alpha_composite(image.convert("RGBA"))
+            upright = ImageOps.exif_transpose(image)
+            opaque = Image.new("RGBA", upright.size, "white")
+            opaque.alpha_composite(upright.convert("RGBA"))
             return np.flipud(np.asarray(opaque.convert("L")))
     except FileNotFoundError:
         raise ImportPlanError(f"{path}: no such file") from None

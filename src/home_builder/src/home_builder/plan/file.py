@@ -1,6 +1,8 @@
 """The plan's own file: YAML that is read back without loss."""
 
 import math
+from dataclasses import asdict
+from pathlib import Path
 from typing import Any, Dict, List, Optional, Tuple
 
 import yaml
@@ -20,11 +22,13 @@ from home_builder.plan.model import (
     Place,
     Point,
     Room,
+    Template,
     Wall,
     Zone,
 )
 from planar.config.yaml_table import Table, parse_table, read_table
 
+LISTS = ("walls", "furniture", "rooms", "places", "zones")
 # Largest coordinate and length of a plan [m], and the most walls or pieces of furniture in one.
 MAX_COORDINATE, MAX_COUNT = 1000.0, 5000
 
@@ -44,8 +48,10 @@ def parse_plan(text: str, source: str = "plan") -> HomePlan:
 
 
 def _plan(table: Table) -> HomePlan:
-    table.allow_only("name", "start", "walls", "furniture", "rooms", "places", "zones")
-    for key in ("walls", "furniture", "rooms", "places", "zones"):
+    table.allow_only(
+        "name", "start", "start_yaw", "walls", "furniture", "rooms", "places", "zones", "template"
+    )
+    for key in LISTS:
         count = len(table.tables(key))
         table.check(count <= MAX_COUNT, key, f"at most {MAX_COUNT} entries")
     return HomePlan(
@@ -56,6 +62,8 @@ def _plan(table: Table) -> HomePlan:
         tuple(map(_place, table.tables("places"))),
         tuple(map(_zone, table.tables("zones"))),
         _point(table, "start") if "start" in table else (0.0, 0.0),
+        _coordinate(table, "start_yaw", 0.0),
+        _template(table.table("template")) if "template" in table else None,
     )
 
 
@@ -159,11 +167,26 @@ def _zone(table: Table) -> Zone:
     return Zone(table.text("name"), kind, _points(table, "corners"), speed)
 
 
+def _template(table: Table) -> Template:
+    table.allow_only("file", "x", "y", "scale", "width", "height")
+    name = table.text("file")
+    table.check(Path(name).name == name, "file", "a file of the folder itself")
+    return Template(
+        name,
+        _coordinate(table, "x"),
+        _coordinate(table, "y"),
+        _length(table, "scale", 1.0),
+        table.count("width"),
+        table.count("height"),
+    )
+
+
 def plan_entries(plan: HomePlan) -> Dict[str, Any]:
     """Return a plan as tables, lists and numbers, as in its file and in JSON."""
-    return {
+    entries: Dict[str, Any] = {
         "name": plan.name,
         "start": list(plan.start),
+        "start_yaw": plan.start_yaw,
         "walls": [_wall_entry(wall) for wall in plan.walls],
         "furniture": [_furniture_entry(piece) for piece in plan.furniture],
         "rooms": [{"name": room.name, "x": room.x, "y": room.y} for room in plan.rooms],
@@ -173,18 +196,21 @@ def plan_entries(plan: HomePlan) -> Dict[str, Any]:
         ],
         "zones": [_zone_entry(zone) for zone in plan.zones],
     }
+    if plan.template is not None:
+        entries["template"] = asdict(plan.template)
+    return entries
 
 
 def plan_text(plan: HomePlan) -> str:
     """Return the text of a plan file; ``parse_plan`` returns an equal plan."""
     entries = plan_entries(plan)
-    content = {key: value for key, value in entries.items() if key in ("name", "start")}
+    content = {key: value for key, value in entries.items() if not isinstance(value, list) or key == "start"}
     head = "# The plan of a home: metres and radians. ./scripts/build_home.sh FOLDER builds it again.\n"
     lines = [
         head,
         yaml.safe_dump(content, sort_keys=False, default_flow_style=None, allow_unicode=True),
     ]
-    for key in ("walls", "furniture", "rooms", "places", "zones"):
+    for key in LISTS:
         lines += _list_lines(key, entries[key])
     return "".join(lines)
 

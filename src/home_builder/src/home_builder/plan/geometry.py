@@ -46,10 +46,10 @@ def end_extensions(walls: Sequence[Wall]) -> List[Tuple[float, float]]:
 
     A wall that ends on the centre line of another one is extended to its far face, so that corners close.
     """
+    if not walls:
+        return []
     extensions = np.zeros((len(walls), 2))
     ends = shapely.points([end for wall in walls for end in (wall.start, wall.end)])
-    if not len(ends):
-        return []
     tree = shapely.STRtree([wall_line(wall) for wall in walls])
     ends_met, walls_met = tree.query(ends, predicate="dwithin", distance=TOUCHING)
     for number, other in zip(ends_met.tolist(), walls_met.tolist()):

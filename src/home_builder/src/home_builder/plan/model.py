@@ -1,8 +1,8 @@
 """The plan of a home, as it is drawn: frozen values in metres and radians, in the frame of the plan."""
 
 import math
-from dataclasses import dataclass, field
-from typing import Tuple
+from dataclasses import dataclass
+from typing import Optional, Tuple
 
 Point = Tuple[float, float]
 
@@ -154,6 +154,27 @@ class Zone:
 
 
 @dataclass(frozen=True)
+class Template:
+    """A picture below the drawing, to be traced; no part of the home.
+
+    Attributes:
+        file: Name of the picture in the folder of the home.
+        x: Position of its lower left corner [m].
+        y: Position of that corner [m].
+        scale: Size of a pixel [m].
+        width: Width, in pixels.
+        height: Height, in pixels.
+    """
+
+    file: str
+    x: float
+    y: float
+    scale: float
+    width: int
+    height: int
+
+
+@dataclass(frozen=True)
 class HomePlan:
     """The plan of a home.
 
@@ -164,7 +185,9 @@ class HomePlan:
         rooms: Names of rooms.
         places: Named places in addition to those of rooms and furniture.
         zones: Keep-out and speed zones.
-        start: Where the robot starts, facing along x [m]; the origin of world and map.
+        start: Where the robot starts [m].
+        start_yaw: Its heading there [rad]; this pose is the origin of world and map.
+        template: Picture that is traced; None: none.
     """
 
     name: str = "home"
@@ -173,4 +196,6 @@ class HomePlan:
     rooms: Tuple[Room, ...] = ()
     places: Tuple[Place, ...] = ()
     zones: Tuple[Zone, ...] = ()
-    start: Point = field(default=(0.0, 0.0))
+    start: Point = (0.0, 0.0)
+    start_yaw: float = 0.0
+    template: Optional[Template] = None

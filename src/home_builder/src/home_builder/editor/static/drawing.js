@@ -79,53 +79,64 @@ function drawTemplate(template) {
   const [x, y] = toPage(template.x, template.y);
   const size = template.scale * view.scale;
   made("image", {
-    href: template.data, x, y: y - template.height * size, width: template.width * size,
+    href: `/${template.file}`, x, y: y - template.height * size, width: template.width * size,
     height: template.height * size, opacity: 0.45, preserveAspectRatio: "none",
   });
 }
 
-function drawPlan(plan, judged, chosen) {
+function drawPlan(plan, judged, selection) {
+  const mark = element => { if (selection.includes(element.dataset.item)) element.classList.add("chosen"); };
   for (const room of judged.rooms) {
     polygon(room.corners, "room");
     label(`${room.name}  ${room.area.toFixed(1)} m²`, ...room.middle);
   }
-  plan.zones.forEach((zone, i) => mark(polygon(zone.corners, `zone ${zone.kind}`, `zones/${i}`), chosen));
+  plan.zones.forEach((zone, i) => {
+    mark(polygon(zone.corners, `zone ${zone.kind}`, `zones/${i}`));
+  });
   plan.walls.forEach((wall, i) => {
-    mark(polygon(stretch(wall, -wall.thickness / 2, wallLength(wall) + wall.thickness / 2), "wall", `walls/${i}`), chosen);
+    mark(polygon(stretch(wall, -wall.thickness / 2, wallLength(wall) + wall.thickness / 2), "wall", `walls/${i}`));
     (wall.openings || []).forEach((each, k) => {
       const shape = stretch(wall, each.at - each.width / 2, each.at + each.width / 2, wall.thickness + 0.02);
-      mark(polygon(shape, each.kind, `walls/${i}/openings/${k}`), chosen);
+      mark(polygon(shape, each.kind, `walls/${i}/openings/${k}`));
     });
   });
   plan.furniture.forEach((piece, i) => {
-    mark(polygon(furnitureCorners(piece), "furniture", `furniture/${i}`), chosen);
+    mark(polygon(furnitureCorners(piece), "furniture", `furniture/${i}`));
     if (piece.kind !== "outline") label(piece.name || piece.kind, piece.x, piece.y);
   });
-  plan.places.forEach((place, i) => drawArrow(place, place.yaw, "place", `places/${i}`, chosen, place.name));
+  plan.places.forEach((place, i) => mark(arrow(place, "place", `places/${i}`, place.name)));
   plan.rooms.forEach((room, i) => {
     const [x, y] = toPage(room.x, room.y);
     const dot = made("circle", { cx: x, cy: y + 8, r: 4, class: "place" });
     dot.dataset.item = `rooms/${i}`;
-    mark(dot, chosen);
+    mark(dot);
   });
-  drawArrow({ x: plan.start[0], y: plan.start[1] }, 0, "start", "start", chosen, "start");
+  mark(arrow(plan.start, "start", "start", "start"));
 }
 
-function drawArrow(point, yaw, kind, item, chosen, name) {
-  const corners = [[0.22, 0], [-0.15, 0.14], [-0.15, -0.14]].map(([x, y]) => [
-    point.x + x * Math.cos(yaw) - y * Math.sin(yaw), point.y + x * Math.sin(yaw) + y * Math.cos(yaw)]);
-  mark(polygon(corners, kind, item), chosen);
-  label(name, point.x, point.y - 0.35);
+function arrow({ x, y, yaw }, kind, item, name) {
+  const corners = [[0.22, 0], [-0.15, 0.14], [-0.15, -0.14]].map(([along, across]) => [
+    x + along * Math.cos(yaw) - across * Math.sin(yaw), y + along * Math.sin(yaw) + across * Math.cos(yaw)]);
+  label(name, x, y - 0.35);
+  return polygon(corners, kind, item);
 }
 
-function mark(element, chosen) {
-  if (element.dataset.item === chosen) element.classList.add("chosen");
+function handlesOf(item, path) {  // points by the name of the handle
+  const ahead = (distance, yaw) => [item.x + distance * Math.cos(yaw), item.y + distance * Math.sin(yaw)];
+  if (path.includes("openings")) return {};
+  if (item.end) return { start: item.start, end: item.end };
+  if (path.startsWith("zones")) return Object.fromEntries(item.corners.map((corner, k) => [`corner${k}`, corner]));
+  if (item.size) {
+    const corners = item.corners ? [] : furnitureCorners(item).map((corner, k) => [`corner${k}`, corner]);
+    return { turn: ahead(item.size[1] / 2 + 0.3, item.yaw + Math.PI / 2), ...Object.fromEntries(corners) };
+  }
+  return item.yaw === undefined ? {} : { turn: ahead(0.5, item.yaw) };
 }
 
-function drawHandles(wall, item) {
-  for (const end of ["start", "end"]) {
-    const [x, y] = toPage(...wall[end]);
-    made("circle", { cx: x, cy: y, r: 6, class: "handle" }).dataset.item = `${item}/${end}`;
+function drawHandles(item, path) {
+  for (const [name, point] of Object.entries(handlesOf(item, path))) {
+    const [x, y] = toPage(...point);
+    made("circle", { cx: x, cy: y, r: 6, class: name === "turn" ? "handle turn" : "handle" }).dataset.handle = `${path}#${name}`;
   }
 }
 
@@ -133,5 +144,23 @@ function drawProblems(problems) {
   for (const problem of problems) {
     const [x, y] = toPage(problem.x, problem.y);
     made("circle", { cx: x, cy: y, r: 13, class: problem.is_error ? "problem error" : "problem", "pointer-events": "none" });
+  }
+}
+
+function drawPreview() {
+  if (drag && drag.area) {
+    const [[x1, y1], [x2, y2]] = [drag.area, pointer];
+    polygon([[x1, y1], [x2, y1], [x2, y2], [x1, y2]], "area");
+  }
+  if (!points.length) return;
+  const aim = tool === "scale" ? pointer : snapped(pointer);
+  if (tool === "wall") {
+    const last = points[points.length - 1];
+    const wall = { start: last, end: aim, ...newWall };
+    polygon(stretch(wall, 0, wallLength(wall)), "preview");
+    label(typed ? `${typed} m` : `${wallLength(wall).toFixed(2)} m`, (last[0] + aim[0]) / 2, (last[1] + aim[1]) / 2 + 0.15);
+  } else {
+    polygon(points.length < 2 ? [...points, aim] : points, "preview");
+    if (typed) label(`${typed} m`, ...points[points.length - 1]);
   }
 }
