@@ -19,7 +19,7 @@ from auto_docking_lite.contract import (
 )
 from auto_docking_lite.detours import free_legs
 from auto_docking_lite.estimator import DockEstimate, DockEstimator
-from auto_docking_lite.motion import drive_to, follow_line, turn_to
+from auto_docking_lite.motion import drive_to, follow_line, obstacles_in_base, turn_to
 from auto_docking_lite.poses import staging_pose
 from planar import Pose2, Twist2, wrap
 from planar.driving import DriveResult
@@ -175,10 +175,9 @@ class Docking(RetriedTask):
         return self._straight(inputs, target)
 
     def _legs(self, inputs: DockInputs, target: Pose2) -> Optional[Sequence[Pose2]]:
-        """Return the positions on a free drive of straight legs to a target in odom; None without one."""
-        estimate = self._estimator.estimate()
-        assert estimate is not None
-        return free_legs(inputs, target, estimate.dock_in_odom, self._settings)
+        """Return the positions on a free way of straight legs to a target in odom; None without one."""
+        obstacles = inputs.base_in_odom.transform_points(obstacles_in_base(inputs.scan))
+        return free_legs(obstacles, inputs.base_in_odom, target, self._settings.robot_radius)
 
     def _straight(self, inputs: DockInputs, target: Pose2) -> Optional[Twist2]:
         """Drive to a target by straight legs; wait while something is in the way."""
