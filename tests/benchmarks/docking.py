@@ -187,7 +187,7 @@ def report(starts: Sequence[Start]) -> str:
         f"docked {docked} of {len(starts)}: {100.0 * docked / len(starts):.2f} % "
         f"(95 % interval {100.0 * docking.low:.2f} to {100.0 * docking.high:.2f} %)",
         f"time: median {np.median(seconds):.1f} s, 95 % {np.percentile(seconds, 95):.1f} s, "
-        f"longest {seconds.max():.1f} s; CPU {sum(start.cpu for start in starts) / len(starts):.2f} s a start",
+        f"longest {seconds.max():.1f} s; CPU {np.mean([start.cpu for start in starts]):.2f} s a start",
         f"touched something but the dock: {sum(bool(start.touched) for start in starts)}",
     ]
     codes = Counter(start.code for start in starts if not start.is_docked)
