@@ -84,6 +84,16 @@ def test_a_known_dock_that_is_gone_is_searched_from_several_poses():
     assert result.code is DockCode.FAILED_TO_DETECT_DOCK and "5 attempts" in result.text
 
 
+def test_a_known_dock_that_is_gone_is_searched_where_it_was():
+    base = Pose2(1.5, 0.0)
+    robot, farthest = docking(base, base.inverse(), field=None), 0.0
+    while robot.tick().result is None:
+        estimate = robot.controller.estimate()
+        if estimate is not None:
+            farthest = max(farthest, estimate.dock_in_odom.distance_to(robot.dock_in_odom))
+    assert farthest < 1.0
+
+
 def test_a_dock_that_does_not_charge_ends_docking_with_a_reason():
     robot = docking(Pose2(1.2, 0.1, 3.0), charges=False, settings=DockingSettings(docking_timeout=600.0))
     result = robot.run(600.0)
