@@ -241,7 +241,9 @@ class RequestService:
         around, charge, was_low = self._site.model, robot.charge, self._is_low
         self._is_low = around.dock is None and charge is not None and charge < around.energy.reserve
         if self._is_low and not was_low and not robot.is_docked:
-            text = f"the charge is {100.0 * (charge or 0.0):.0f} %, and there is no dock: place one with --dock"
+            text = (
+                f"the charge is {100.0 * (charge or 0.0):.0f} %, and there is no dock: place one with --dock"
+            )
             self.book.log(now, "battery", text)
 
     def _record_robot(self, now: float) -> None:

@@ -8,7 +8,7 @@ from typing import Any, Dict, List, Mapping, Optional
 from cockpit.errors import CockpitError
 from cockpit.models.tables import paragraph, table
 
-HEADS = ("Request", "Status", "Planned end", "Deadline", "")
+HEADS = ("Request", "Status", "Planned", "Due", "")
 LOW, LOW_COLOUR, COLOUR = 0.2, "#c03030", "#2f9e44"
 BAR = "display:inline-block;width:120px;height:10px;border:1px solid #888;border-radius:3px;overflow:hidden"
 
@@ -53,14 +53,13 @@ def _battery(state: Mapping[str, Any]) -> str:
 
 
 def _row(task: Dict[str, Any]) -> List[str]:
-    late = "late" if task.get("in_time") is False else ""
-    remark = ", ".join(each for each in (late, str(task.get("reason") or "")) if each)
-    end = _clock(task.get("unix_millis_expected_finish_time"))
-    return [str(task["text"]), str(task["status"]), end, _clock(task.get("unix_millis_deadline")), remark]
+    status = f"{task['status']}, late" if task.get("in_time") is False else str(task["status"])
+    planned, due = (_clock(task.get(f"unix_millis_{name}")) for name in ("expected_finish_time", "deadline"))
+    return [str(task["text"]), status, planned, due, str(task.get("reason") or "")]
 
 
 def _clock(millis: Optional[float]) -> str:
     """Return a time of day; local, as those of request.sh."""
     if millis is None:
         return ""
-    return datetime.fromtimestamp(millis / 1000.0, timezone.utc).astimezone().strftime("%H:%M:%S")
+    return datetime.fromtimestamp(millis / 1000.0, timezone.utc).astimezone().strftime("%H:%M")

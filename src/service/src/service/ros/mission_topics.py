@@ -71,7 +71,7 @@ class MissionTopics:
     def _publish_queue(self, service: RequestService, state: Dict[str, Any]) -> None:
         """Publish battery, activity and the open requests in the order of the plan, if they have changed."""
         charge = None if state["charge"] is None else round(state["charge"], 2)
-        tasks = sorted(service.book.tasks.values(), key=lambda task: task.estimate or float("inf"))
+        tasks = sorted(service.book.tasks.values(), key=_position)
         queue = tuple((each.id, each.status, round((each.estimate or 0.0) / ESTIMATE_STEP)) for each in tasks)
         news = (state["activity"], state["is_docked"], charge, queue)
         if news != self._published_queue:
@@ -111,6 +111,11 @@ class MissionTopics:
             color=ColorRGBA(*item.color, 1.0),
             is_solid=item.solid,
         )
+
+
+def _position(task: ServiceTask) -> Tuple[bool, float]:
+    """Return a key by which the task under way comes first, then the others as they are planned."""
+    return task.status is not TaskStatus.UNDERWAY, task.estimate or float("inf")
 
 
 def delivery_states(tasks: List[ServiceTask]) -> List[DeliveryState]:

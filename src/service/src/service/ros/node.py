@@ -134,7 +134,9 @@ class ServiceNode:
         staging = self._staging
         problem = None if staging is None else obstruction_at(staging, self._map)
         if staging is not None and problem:
-            before = f"({staging.x:.2f}, {staging.y:.2f}), {self._settings.staging_distance:g} m before the dock,"
+            before = (
+                f"({staging.x:.2f}, {staging.y:.2f}), {self._settings.staging_distance:g} m before the dock,"
+            )
             fail(f"{before} {problem}; the pose of the dock is that of its front, facing the robot")
 
     def _wait_for(self, required: Dict[str, Callable[[], bool]]) -> None:
