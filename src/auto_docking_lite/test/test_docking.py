@@ -130,6 +130,12 @@ def test_an_obstacle_is_passed():
     assert robot.run().is_success
 
 
+def test_a_box_at_the_staging_pose_is_no_reason_to_fail():
+    box = np.array([[x, y] for x in (0.8, 0.85, 0.9, 0.95, 1.0) for y in (0.18, 0.23, 0.28)])
+    base = Pose2(2.8, -0.5, 0.3)
+    assert docking(base, base.inverse(), obstacles_xy=box).run().is_success
+
+
 def test_navigation_drives_to_a_distant_dock_behind_obstacles():
     navigation = Navigation("")
     controller = DockController(DockingSettings(), navigation)

@@ -32,6 +32,8 @@ def free_legs(obstacles_xy: np.ndarray, start: Pose2, end: Pose2, radius: float)
     """
     if is_free(obstacles_xy, start, end, radius):
         return (end,)
+    if float(np.hypot(*(obstacles_xy - (end.x, end.y)).T).min()) < radius + MIN_CLEARANCE:
+        return None
     path_xy = _shortest(obstacles_xy, start, end, radius)
     if path_xy is None:
         return None
@@ -50,11 +52,10 @@ def _shortest(obstacles_xy: np.ndarray, start: Pose2, end: Pose2, radius: float)
     from_start = np.hypot(cells_xy[..., 0] - start.x, cells_xy[..., 1] - start.y)
     obstacles = cKDTree(obstacles_xy)
     clearance = obstacles.query(cells_xy)[0] - radius
-    room_at_start, room_at_end = obstacles.query(corners)[0] - radius
-    needed = min(MIN_CLEARANCE, room_at_start - TOUCH / 2.0)
-    is_open = clearance > np.where(from_start < 2.0 * NEAR, needed, MIN_CLEARANCE)
+    room = float(obstacles.query(corners[0])[0]) - radius - TOUCH / 2.0
+    is_open = clearance > np.where(from_start < 2.0 * NEAR, min(MIN_CLEARANCE, room), MIN_CLEARANCE)
     first, last = (_cell_at(cells_xy, is_open, pose) for pose in (start, end))
-    if first is None or last is None or room_at_end < MIN_CLEARANCE:
+    if first is None or last is None:
         return None
     graph = grid_graph(is_open, RESOLUTION).tocoo()
     lack = np.clip(1.0 - clearance.ravel() / PREFERRED_CLEARANCE, 0.0, 1.0)
