@@ -7,8 +7,8 @@ WORKSPACE is a catkin workspace in which kobuki_dock_drive is built (yujinrobot/
 DockDrive receives at 50 Hz what the simulated robot measures, as the node passes it on, and its velocity
 goes to the robot. With --unicycle, the robot moves exactly as commanded, without dynamics and noise, and
 stops at the front of the dock. Starts are uniform in area, 0.5 to 2.4 m before the dock and within 58
-degrees, with any heading; nothing stands in the way. A start counts as docked if the algorithm is DONE and
-the robot charges.
+degrees, with headings up to --heading from the direction to the dock; nothing stands in the way. A start
+counts as docked if the algorithm is DONE and the robot charges.
 """
 
 import argparse
@@ -25,7 +25,7 @@ from typing import Optional, Sequence, Tuple
 import numpy as np
 from docking import Options, Start, append, recorded, report, scene_of
 
-from planar import Pose2, Twist2
+from planar import Pose2, Twist2, wrap
 from planar.geometry.dock_field import ROBOT_FRONT, DockField
 from sim_bridge import Episode, EpisodeHooks, Simulation, SimulationSettings, StepResult, robot_named
 from sim_bridge.noise import noise_named
@@ -98,19 +98,19 @@ class DockDrive(EpisodeHooks):
         self._library.dock_drive_delete(self._drive)
 
 
-def start_pose(rng: np.random.Generator) -> Pose2:
-    """Return a start in the field."""
+def start_pose(rng: np.random.Generator, heading: float) -> Pose2:
+    """Return a start in the field, at most ``heading`` [rad] from the direction to the dock."""
     distance = FARTHEST * math.sqrt(rng.uniform((NEAREST / FARTHEST) ** 2, 1.0))
     angle = rng.uniform(-ANGLE, ANGLE)
-    heading = rng.uniform(-math.pi, math.pi)
-    return Pose2(distance * math.cos(angle), distance * math.sin(angle), float(heading))
+    yaw = wrap(angle + math.pi + rng.uniform(-heading, heading))
+    return Pose2(distance * math.cos(angle), distance * math.sin(angle), yaw)
 
 
-def simulated(options: Options) -> Simulation:
+def simulated(options: Options, noise: str) -> Simulation:
     """Return a simulation of the dock and of a robot with what the algorithm needs."""
     robot, needed = robot_named("turtlebot_lidar"), (KobukiProfile, DockIrProfile)
     robot = replace(robot, sensors=tuple(each for each in robot.sensors if isinstance(each, needed)))
-    settings = SimulationSettings(**noise_named(options.noise))
+    settings = SimulationSettings(**noise_named(noise))
     simulation = Simulation(scene_of(0, options)[0], robot, settings, 0, Pose2(0.9, 0.0, math.pi))
     simulation.mark()
     return simulation
@@ -145,15 +145,18 @@ def run_simulated(drive: DockDrive, simulation: Simulation, seed: int, base: Pos
     return step.stamp, bool(power and power.charger)
 
 
-def run(simulation: Optional[Simulation], library: ctypes.CDLL, seed: int) -> Tuple[Start, str]:
+def run(
+    simulation: Optional[Simulation], library: ctypes.CDLL, seed: int, heading: float
+) -> Tuple[Start, str]:
     """Dock from one start; return it and the states on the way.
 
     Args:
         simulation: The simulation; None for a robot without dynamics.
         library: The C interface.
         seed: Seed of the start.
+        heading: Largest angle between the robot's heading and the direction to the dock [rad].
     """
-    base, begin = start_pose(np.random.default_rng([seed, 3])), time.process_time()
+    base, begin = start_pose(np.random.default_rng([seed, 3]), heading), time.process_time()
     drive = DockDrive(library)
     if simulation is None:
         seconds, charges = run_unicycle(drive, base)
@@ -172,20 +175,22 @@ def main() -> int:
     parser.add_argument("--starts", type=int, default=500, help="number of starts (default: 500)")
     parser.add_argument("--seed", type=int, default=1, help="seed of the first start (default: 1)")
     parser.add_argument("--noise", default="turtlebot", help="noise profile (default: turtlebot)")
+    parser.add_argument("--heading", type=float, default=180.0, help="largest angle [deg] (default: 180)")
     parser.add_argument("--unicycle", action="store_true", help="a robot without dynamics and noise")
     parser.add_argument("--record", type=Path, metavar="FILE", help="JSON lines, continued if it exists")
     given = parser.parse_args()
-    options = Options(FARTHEST, ANGLE, 0, "unicycle" if given.unicycle else given.noise, False)
+    noise = f"{'unicycle' if given.unicycle else given.noise}, headings up to {given.heading:g} degrees"
+    options = Options(FARTHEST, ANGLE, 0, noise, False)
     seeds = range(given.seed, given.seed + given.starts)
     starts = [start for start in recorded(given.record, options) if start.seed in seeds]
     batch, done = [], {start.seed for start in starts}
     with tempfile.TemporaryDirectory() as folder:
         library = built_library(given.workspace.resolve(), Path(folder))
-        simulation = None if given.unicycle else simulated(options)
+        simulation = None if given.unicycle else simulated(options, given.noise)
         for seed in seeds:
             if seed in done:
                 continue
-            start, path = run(simulation, library, seed)
+            start, path = run(simulation, library, seed, math.radians(given.heading))
             starts.append(start)
             batch.append(start)
             print(f"{seed}: {start.code} after {start.seconds:.1f} s: {path}", file=sys.stderr, flush=True)
