@@ -36,8 +36,15 @@ from run_report.picture import save_animation  # noqa: E402
 
 SEED = "5"
 MISSION = (str(ROOT / "scripts/home_service.sh"), "--seed", SEED)
+SERVICE = (str(ROOT / "scripts/service.sh"), "--seed", SEED, "--dock", "-1.5", "-3.2", "1.57")
+REQUESTS = (
+    ("deliver cup from pickup to dropoff", "--by", "+20min"),
+    ("go pickup",),
+    ("patrol dropoff pickup 2 times", "--priority", "2"),
+    ("deliver book from dropoff to pickup", "--by", "+1min"),
+)
 PAGE_SECONDS, MISSION_SECONDS, FRAME_SECONDS = 120.0, 240.0, 0.7
-GIF_SIZE, TOOLS_SIZE = (1160, 700), (1400, 1250)
+GIF_SIZE, TOOLS_SIZE, SERVICE_SIZE = (1160, 700), (1400, 1250), (1400, 800)
 GIF_SCALE, GIF_LENGTH = 0.7, 9.0
 # The notice of viser about machines without a graphics card.
 DISMISS = "document.querySelectorAll('.mantine-Notification-closeButton').forEach((each) => each.click())"
@@ -113,6 +120,19 @@ def take_tools(path: Path, _logs: Optional[Path]) -> None:
         page.screenshot(path)
 
 
+def take_service(path: Path, _logs: Optional[Path]) -> None:
+    """Take the cockpit beside a service with a queue."""
+    with tempfile.TemporaryDirectory() as state, cockpit_page(
+        SERVICE_SIZE, *SERVICE, "--state", state
+    ) as page:
+        request = [str(ROOT / "scripts/request.sh"), "--state", state]
+        for words in REQUESTS:
+            subprocess.run([*request, *words], check=True, stdout=subprocess.DEVNULL)
+        page.wait_for("underway", "queued", "%", seconds=PAGE_SECONDS)
+        time.sleep(6.0)
+        page.screenshot(path)
+
+
 def take_map(path: Path, logs: Optional[Path]) -> None:
     """Take the map of a recorded log."""
     assert logs is not None
@@ -140,11 +160,11 @@ def mission_folder(*options: str) -> Iterator[Path]:
 
 
 @contextlib.contextmanager
-def cockpit_page(size: Tuple[int, int]) -> Iterator[Tab]:
-    """Yield the page of a mission that has just started; end the mission afterwards."""
+def cockpit_page(size: Tuple[int, int], *command: str) -> Iterator[Tab]:
+    """Yield the page of a command, by default of the mission, that has just started; end it afterwards."""
     with tempfile.TemporaryDirectory() as output, Browser() as browser:
         run = subprocess.Popen(
-            [*MISSION, "--web", "--output", output],
+            [*(command or MISSION), "--web", "--output", output],
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
             text=True,
@@ -152,7 +172,7 @@ def cockpit_page(size: Tuple[int, int]) -> Iterator[Tab]:
         )
         assert run.stdout is not None
         try:
-            url = next(filter(None, (re.search(r"http://\S+", line) for line in run.stdout)))[0]
+            url = next(filter(None, (re.search(r"cockpit: (http://\S+)", line) for line in run.stdout)))[1]
             page = browser.open(url, *size)
             page.wait_for("/scan", "/map", seconds=PAGE_SECONDS)
             page.evaluate(DISMISS)
@@ -181,6 +201,7 @@ TAKERS: Dict[str, Callable[[Path, Optional[Path]], None]] = {
     "docking.gif": take_docking,
     "docking.png": take_docking,
     "cockpit_tools.png": take_tools,
+    "service.png": take_service,
     **{name: take_map for name in LOGS},
 }
 

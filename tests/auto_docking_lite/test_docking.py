@@ -65,8 +65,11 @@ class TestDocking(unittest.TestCase):
         wait_until("the battery", lambda: self.battery.messages[-1].power_supply_status == charging)
         battery = self.battery.messages[-1]
         self.assertTrue(battery.present and battery.current > 0.0 and 0.5 < battery.percentage < 0.7)
-        wait_until("diagnostics", lambda: self.diagnostics.messages)
-        self.assertEqual(self.diagnostics.messages[-1].status[0].name, "mobile_base: Battery")
+        wait_until("diagnostics", lambda: "mobile_base: Battery" in self.diagnosed())
+
+    def diagnosed(self):
+        """Return the names of all statuses; several nodes publish them."""
+        return {status.name for message in self.diagnostics.messages for status in message.status}
 
     def undock_and_discharge(self):
         text, _ = self.execute(self.undock)

@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 """Dock from random starts, without ROS, and count what happens.
 
-python3 tests/benchmarks/docking.py [--starts 200] [--seed 1] [--clutter 5] [--jobs 1] [--json FILE]
+python3 tests/benchmarks/docking.py [--starts 200] [--seed 1] [--clutter 5] [--jobs 1] [--record FILE]
 
 The dock stands at a wall. Starts are uniform in area within --distance and --angle of the dock's middle
 line, with any heading. Boxes stand at random where they leave the robot's start and the last metre
 before the dock free, and a path between them. The pose of the dock is known with an error of up to 0.3 m
 and 10 degrees. A start counts as docked if the result is success and the simulated robot charges. Every
-20 starts have another scene. Sensor noise is that of the profile --noise. Exit code 1 if fewer starts
-dock than --least.
+20 starts have another scene. Sensor noise is that of the profile --noise. With --record, each scene is
+written when it is done, and scenes that the file has are not run again. Exit code 1 if fewer starts dock
+than --least.
 """
 
 import argparse
@@ -39,7 +40,7 @@ from sim_bridge.sensors.lidar import LaserProfile
 from sim_bridge.simulation import box_on_floor
 from sim_bridge.world import Body, Collision, World
 
-STARTS_PER_SCENE = 20
+STARTS_PER_SCENE, STARTS_A_SEED = 20, 1000
 # Half of the width and length of the area before the dock that is kept free of boxes [m].
 FREE_HALF_WIDTH, FREE_LENGTH = 0.4, 1.3
 ROBOT_RADIUS, PASSAGE = 0.18, 0.5
@@ -69,6 +70,12 @@ class Start:
     is_docked: bool
     seconds: float
     touched: Tuple[str, ...]
+    cpu: float = 0.0
+
+    @property
+    def scene(self) -> int:
+        """Seed of the scene."""
+        return self.seed // STARTS_A_SEED
 
 
 def scene_of(seed: int, options: Options) -> Tuple[World, np.ndarray]:
@@ -119,8 +126,10 @@ def run_scene(options: Options, seed: int, count: int = STARTS_PER_SCENE) -> Lis
     for number in range(count):
         rng = np.random.default_rng([seed, 2, number])
         base = start_of(rng, circles, options)
-        simulation.rewind(1000 * seed + number, base)
-        starts.append(_run(simulation, base, 1000 * seed + number, rng, options))
+        begin, start_seed = time.process_time(), STARTS_A_SEED * seed + number
+        simulation.rewind(start_seed, base)
+        start = _run(simulation, base, start_seed, rng, options)
+        starts.append(replace(start, cpu=time.process_time() - begin))
     simulation.close()
     return starts
 
@@ -150,7 +159,26 @@ def _run(simulation: Simulation, base: Pose2, seed: int, rng: np.random.Generato
     return Start(seed, pose, result.code.name, result.text, is_docked, step.stamp, others)
 
 
-def report(starts: Sequence[Start], cpu: float) -> str:
+def recorded(path: Optional[Path], options: Options) -> List[Start]:
+    """Return the starts that a record has; it must be of the same options."""
+    if path is None or not path.exists():
+        return []
+    first, *lines = path.read_text().splitlines()
+    if json.loads(first) != asdict(options):
+        raise SystemExit(f"error: {path} was recorded with other options: {first}")
+    starts = [Start(**start) for line in lines for start in json.loads(line)]
+    return [replace(start, touched=tuple(start.touched)) for start in starts]
+
+
+def append(path: Path, options: Options, starts: Sequence[Start]) -> None:
+    """Append the starts of a scene to a record."""
+    lines = [] if path.exists() else [json.dumps(asdict(options))]
+    lines.append(json.dumps([asdict(start) for start in starts]))
+    with path.open("a") as file:
+        file.write("\n".join(lines) + "\n")
+
+
+def report(starts: Sequence[Start]) -> str:
     """Return the table of an evaluation."""
     docked = sum(start.is_docked for start in starts)
     docking = share(docked, len(starts))
@@ -159,7 +187,7 @@ def report(starts: Sequence[Start], cpu: float) -> str:
         f"docked {docked} of {len(starts)}: {100.0 * docked / len(starts):.2f} % "
         f"(95 % interval {100.0 * docking.low:.2f} to {100.0 * docking.high:.2f} %)",
         f"time: median {np.median(seconds):.1f} s, 95 % {np.percentile(seconds, 95):.1f} s, "
-        f"longest {seconds.max():.1f} s; CPU {cpu / len(starts):.2f} s a start",
+        f"longest {seconds.max():.1f} s; CPU {np.mean([start.cpu for start in starts]):.2f} s a start",
         f"touched something but the dock: {sum(bool(start.touched) for start in starts)}",
     ]
     codes = Counter(start.code for start in starts if not start.is_docked)
@@ -179,26 +207,27 @@ def main() -> int:
     parser.add_argument("--jobs", type=int, default=1, help="processes (default: 1)")
     parser.add_argument("--least", type=float, default=0.0, help="share that must dock (default: 0)")
     parser.add_argument("--failures", action="store_true", help="list the starts that failed")
-    parser.add_argument("--json", type=Path, metavar="FILE", help="also write the starts to this file")
+    parser.add_argument("--record", type=Path, metavar="FILE", help="JSON lines, continued if it exists")
     given = parser.parse_args()
     options = Options(
         given.distance, math.radians(given.angle), given.clutter, given.noise, not given.unknown
     )
     scenes = range(given.seed, given.seed + math.ceil(given.starts / STARTS_PER_SCENE))
-    begin, starts = time.monotonic(), []
+    starts = [start for start in recorded(given.record, options) if start.scene in scenes]
+    scenes_left = sorted(set(scenes) - {start.scene for start in starts})
     with multiprocessing.get_context("spawn").Pool(given.jobs) as pool:
-        for done in pool.imap(partial(run_scene, options), scenes):
+        for done in pool.imap(partial(run_scene, options), scenes_left):
             starts += done
+            if given.record:
+                append(given.record, options, done)
             docked = sum(start.is_docked for start in starts)
             print(f"{docked} of {len(starts)} docked", file=sys.stderr, flush=True)
-    starts = starts[: given.starts]
-    print(report(starts, (time.monotonic() - begin) * given.jobs))
+    starts = sorted(starts, key=lambda start: start.seed)[: given.starts]
+    print(report(starts))
     if given.failures:
         for start in starts:
             if not start.is_docked or start.touched:
                 print(start)
-    if given.json:
-        given.json.write_text(json.dumps([asdict(start) for start in starts]) + "\n")
     return int(sum(start.is_docked for start in starts) < given.least * len(starts))
 
 

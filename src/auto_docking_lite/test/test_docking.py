@@ -84,6 +84,16 @@ def test_a_known_dock_that_is_gone_is_searched_from_several_poses():
     assert result.code is DockCode.FAILED_TO_DETECT_DOCK and "5 attempts" in result.text
 
 
+def test_a_known_dock_that_is_gone_is_searched_where_it_was():
+    base = Pose2(1.5, 0.0)
+    robot, farthest = docking(base, base.inverse(), field=None), 0.0
+    while robot.tick().result is None:
+        estimate = robot.controller.estimate()
+        if estimate is not None:
+            farthest = max(farthest, estimate.dock_in_odom.distance_to(robot.dock_in_odom))
+    assert farthest < 1.0
+
+
 def test_a_dock_that_does_not_charge_ends_docking_with_a_reason():
     robot = docking(Pose2(1.2, 0.1, 3.0), charges=False, settings=DockingSettings(docking_timeout=600.0))
     result = robot.run(600.0)
@@ -118,6 +128,12 @@ def test_an_obstacle_is_passed():
     box = np.array([[1.3, y] for y in np.linspace(-0.15, 0.15, 7)])
     robot = docking(Pose2(2.0, 0.0, math.pi), obstacles_xy=box)
     assert robot.run().is_success
+
+
+def test_a_box_at_the_staging_pose_is_no_reason_to_fail():
+    box = np.array([[x, y] for x in (0.8, 0.85, 0.9, 0.95, 1.0) for y in (0.18, 0.23, 0.28)])
+    base = Pose2(2.8, -0.5, 0.3)
+    assert docking(base, base.inverse(), obstacles_xy=box).run().is_success
 
 
 def test_navigation_drives_to_a_distant_dock_behind_obstacles():

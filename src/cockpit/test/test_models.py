@@ -1,5 +1,6 @@
 """What tools compute."""
 
+import json
 import math
 import os
 import re
@@ -19,6 +20,7 @@ from cockpit.models.log import MOST_KEPT, MOST_SHOWN, LogBuffer, LogEntry, LogFi
 from cockpit.models.mission import STATES, mission_html
 from cockpit.models.rates import PeriodicTimer
 from cockpit.models.reconfigure import ReconfigurableParameter, parameters_from_description, values_of
+from cockpit.models.service import service_html
 from cockpit.models.tables import table
 from cockpit.models.text import amount, flat
 from cockpit.models.time_series import TimeSeries, expanded, number_at, numbers_in, suggested
@@ -312,3 +314,48 @@ def test_names_in_a_table_are_never_broken_and_texts_between_words():
     of_name, of_text = (style for style in re.findall(r'<td style="([^"]*)"', drawn))
     assert "white-space:nowrap" in of_name
     assert "overflow-wrap:break-word" in of_text and "anywhere" not in drawn
+
+
+def service_state(tasks=(), **state):
+    state = {
+        "activity": "idle",
+        "carrying": None,
+        "charge": 0.5,
+        "is_docked": False,
+        "open": len(tasks),
+        **state,
+    }
+    return json.dumps({"state": state, "tasks": list(tasks)})
+
+
+def test_the_queue_of_a_service_is_listed_with_its_battery():
+    tasks = [
+        {"text": "deliver <cup> from kitchen to desk", "status": "underway", "in_time": False},
+        {"text": "dock", "status": "queued", "reason": "to charge", "unix_millis_expected_finish_time": 0},
+    ]
+    drawn = service_html(service_state(tasks, activity="driving to kitchen", carrying="cup", open=5))
+    for text in (
+        "50 %",
+        "<b>driving to kitchen</b>, carrying cup",
+        "&lt;cup&gt;",
+        "late",
+        "to charge",
+        "3 more",
+    ):
+        assert text in drawn
+    assert "width:50%" in drawn and "in the dock" not in drawn
+
+
+def test_a_service_without_requests_or_battery_is_described():
+    assert "no requests" in service_html(service_state(is_docked=True)) and "in the dock" in service_html(
+        service_state(is_docked=True)
+    )
+    assert "no battery state" in service_html(service_state(charge=None))
+
+
+@pytest.mark.parametrize(
+    "text", ["", "{", "[]", "{}", '{"state": {}, "tasks": []}', '{"state": 1, "tasks": 2}']
+)
+def test_a_malformed_state_of_a_service_is_an_error(text):
+    with pytest.raises(CockpitError, match="service/state"):
+        service_html(text)

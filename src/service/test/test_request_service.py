@@ -248,6 +248,18 @@ def test_a_low_battery_is_charged_before_the_next_task_and_never_empty():
     assert {task.status for task in bench.ended.values()} == {TaskStatus.COMPLETED}
 
 
+def test_a_low_battery_without_a_dock_is_noted_once():
+    energy = EnergySettings(stand_hours=1.0)
+    robot = ideal_robot(pose=Pose2(3.0, 3.0))
+    robot.charge = 0.21
+    robot._settings = type(robot._settings)(energy, 0.0, 0.0, 0.0)
+    bench = Bench(robot=robot, where=site(has_dock=False, energy=energy))
+    bench.send("go desk")
+    bench.run(120.0)
+    notes = [entry.text for entry in bench.log if entry.kind == "battery"]
+    assert len(notes) == 1 and "there is no dock" in notes[0]
+
+
 def test_an_idle_robot_waits_in_its_dock():
     bench = Bench(robot=ideal_robot(pose=Pose2(3.0, 3.0)))
     bench.run(290.0)

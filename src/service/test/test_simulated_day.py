@@ -1,5 +1,6 @@
 """Days of service in the simulator, in one process."""
 
+from collections import deque
 from dataclasses import replace
 
 import numpy as np
@@ -50,7 +51,7 @@ def plan(**values):
 def day(requests, seed=1, settings=SimulationSettings(), furniture=(), **values):
     conditions = EpisodeConditions(simulation=settings)
     made = prepare_day(plan(**values), conditions.navigation(NAVIGATION_CONFIG), conditions, seed)
-    made._requests, made._furniture = list(requests), list(furniture)
+    made._service._coming, made._furniture = deque(requests), list(furniture)
     return made
 
 

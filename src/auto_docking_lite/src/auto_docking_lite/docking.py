@@ -19,7 +19,7 @@ from auto_docking_lite.contract import (
 )
 from auto_docking_lite.detours import free_legs
 from auto_docking_lite.estimator import DockEstimate, DockEstimator
-from auto_docking_lite.motion import drive_to, follow_line, turn_to
+from auto_docking_lite.motion import drive_to, follow_line, obstacles_in_base, turn_to
 from auto_docking_lite.poses import staging_pose
 from planar import Pose2, Twist2, wrap
 from planar.driving import DriveResult
@@ -34,8 +34,10 @@ SCAN_ANGLE = 2.5
 STAGED = 0.06
 # Heading error with which the approach begins [rad].
 ALIGNED = 0.06
-# Bearings of the staging poses of the attempts [rad].
+# Bearings of the staging poses of the attempts [rad]; bearings, and factors of the distance, of those that
+# take their place.
 BEARINGS = 0.0, 0.0, 0.3, -0.3, 0.5
+FURTHER_BEARINGS, FACTORS = (0.0, 0.25, -0.25, 0.5, -0.5), (1.0, 1.4, 0.75)
 
 
 class Docking(RetriedTask):
@@ -114,21 +116,37 @@ class Docking(RetriedTask):
                 return self._enter(DockState.STAGING, "driving to the staging pose")
         return self._enter(DockState.SCAN, "searching for the dock")
 
-    def _target(self) -> Pose2:
-        """Return the staging pose of the present attempt in odom."""
+    def _way(self, inputs: DockInputs) -> Tuple[Pose2, Optional[Sequence[Pose2]]]:
+        """Return the staging pose of the present attempt in odom, and the positions on a free way to it.
+
+        If there is no way to it, another pose before the dock takes its place; the way is None if there is
+        none to any of them.
+        """
         estimate = self._estimator.estimate()
         assert estimate is not None
-        bearing = BEARINGS[self._attempt % len(BEARINGS)]
-        return staging_pose(estimate.dock_in_odom, self._settings, bearing)
+        obstacles = inputs.base_in_odom.transform_points(obstacles_in_base(inputs.scan))
+        first = BEARINGS[self._attempt % len(BEARINGS)]
+        poses = [
+            staging_pose(estimate.dock_in_odom, self._settings, bearing, factor)
+            for factor in FACTORS
+            for bearing in (first, *FURTHER_BEARINGS)
+        ]
+        for pose in poses:
+            legs = free_legs(obstacles, inputs.base_in_odom, pose, self._settings.robot_radius)
+            if legs is not None:
+                return pose, legs
+        return poses[0], None
 
     def _stage(self, inputs: DockInputs) -> Optional[Twist2]:
         """Drive to the staging pose: straight if possible, else by navigation."""
-        target, base = self._target(), inputs.base_in_odom
         if not self._is_sent:
-            if base.distance_to(target) < STAGED:
+            target, legs = self._way(inputs)
+            if inputs.base_in_odom.distance_to(target) < STAGED:
                 return self._enter(DockState.SCAN, "searching for the dock")
-            if self._legs(inputs, target) is not None or self._navigation is None:
-                return self._straight(inputs, target)
+            # Beyond what the scan shows well, navigation knows better ways than around what is visible.
+            is_far = inputs.base_in_odom.distance_to(target) > self._settings.dock_far_range
+            if self._navigation is None or (legs is not None and (len(legs) == 1 or not is_far)):
+                return self._straight(inputs, legs)
             if inputs.odom_in_map is None:
                 return self._fail(DockCode.FAILED_TO_STAGE, "the robot's pose in the map is not known")
             self._navigation.send(inputs.odom_in_map @ target)
@@ -165,24 +183,17 @@ class Docking(RetriedTask):
         """Drive to the middle line of the dock."""
         estimate, base = self._estimator.estimate(), inputs.base_in_odom
         assert estimate is not None
-        in_dock, target = estimate.dock_in_odom.inverse() @ base, self._target()
+        in_dock, (target, legs) = estimate.dock_in_odom.inverse() @ base, self._way(inputs)
         is_before = 0.6 * self._settings.staging_distance < in_dock.x < 1.5 * self._settings.staging_distance
         is_first = self._attempt % len(BEARINGS) == 0
         if base.distance_to(target) < STAGED or (is_first and is_before and abs(in_dock.y) < STAGED):
             return self._enter(DockState.ALIGNED, "turning to the dock")
-        if self._legs(inputs, target) is None and self._navigation is not None and inputs.odom_in_map:
+        if legs is None and self._navigation is not None and inputs.odom_in_map:
             return self._enter(DockState.STAGING, "driving around an obstacle")
-        return self._straight(inputs, target)
+        return self._straight(inputs, legs)
 
-    def _legs(self, inputs: DockInputs, target: Pose2) -> Optional[Sequence[Pose2]]:
-        """Return the positions on a free drive of straight legs to a target in odom; None without one."""
-        estimate = self._estimator.estimate()
-        assert estimate is not None
-        return free_legs(inputs, target, estimate.dock_in_odom, self._settings)
-
-    def _straight(self, inputs: DockInputs, target: Pose2) -> Optional[Twist2]:
-        """Drive to a target by straight legs; wait while something is in the way."""
-        legs = self._legs(inputs, target)
+    def _straight(self, inputs: DockInputs, legs: Optional[Sequence[Pose2]]) -> Optional[Twist2]:
+        """Drive along straight legs; wait while there is no way."""
         if legs is None:
             return self._wait(inputs, DockCode.FAILED_TO_STAGE, "something is before the dock")
         self._since.pop("blocked", None)

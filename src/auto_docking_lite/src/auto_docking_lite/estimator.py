@@ -93,6 +93,9 @@ class DockEstimator:
     def update(self, received: Sequence[Tuple[Pose2, Signals]]) -> None:
         """Update the estimate.
 
+        Before the first signal the estimate stays where a dock is expected: one that is hidden or gone would
+        otherwise be moved to wherever no signal is received.
+
         Args:
             received: Poses of the robot in odom with the signals received there, in the order of time.
         """
@@ -104,7 +107,7 @@ class DockEstimator:
         if signals.any() and self._particles is None:
             self._particles = self._around(*used[int(signals.any(axis=1).argmax())])
         self.has_signal = self.has_signal or bool(signals.any())
-        if self._particles is None:
+        if self._particles is None or not self.has_signal:
             return
         logs = log_likelihoods(self._particles, bases, signals, self._field)
         self._check(logs.max(), int((signals != 0).sum()), used)

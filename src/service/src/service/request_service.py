@@ -82,6 +82,7 @@ class RequestService:
         self._planned_at, self._planned_charge = -math.inf, 0.0
         self._recorded_at, self._idle_since = -math.inf, 0.0
         self._pending: List[RobotOrder] = []
+        self._is_low = False
         self._robot = RobotInputs(Pose2() if snapshot.robot is None else snapshot.robot.pose)
 
     def take_changes(self) -> Changes:
@@ -140,6 +141,7 @@ class RequestService:
             The next order; None while nothing changes.
         """
         self._note_clock(now)
+        self._note_battery(now, robot)
         elapsed, self._robot = self._elapsed.update(now), robot
         if self._pending:
             return self._pending.pop(0)
@@ -233,6 +235,16 @@ class RequestService:
             self.book.log(now, "clock", f"the clock went back by {self._latest - now:.0f} s")
             self._planned_at = -math.inf
         self._latest = now
+
+    def _note_battery(self, now: float, robot: RobotInputs) -> None:
+        """Note that the charge is low where there is no dock."""
+        around, charge, was_low = self._site.model, robot.charge, self._is_low
+        self._is_low = around.dock is None and charge is not None and charge < around.energy.reserve
+        if self._is_low and not was_low and not robot.is_docked:
+            text = (
+                f"the charge is {100.0 * (charge or 0.0):.0f} %, and there is no dock: place one with --dock"
+            )
+            self.book.log(now, "battery", text)
 
     def _record_robot(self, now: float) -> None:
         """Note the robot's pose now and then, and while it works."""

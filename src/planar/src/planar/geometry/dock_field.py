@@ -7,6 +7,7 @@ pose of a dock is that of its front on the floor, with the x axis away from the 
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Iterator, Tuple
 
 from planar.config.parameters import POSITIVE, Interval, check_parameters, parameter
@@ -59,8 +60,13 @@ class DockField:
         Args:
             base: Pose of the robot, in the frame in which those of the receivers are wanted.
         """
-        for bearing in (-self.dock_receiver_bearing, 0.0, self.dock_receiver_bearing):
-            yield base @ Pose2(0.0, 0.0, bearing) @ Pose2(self.dock_receiver_radius)
+        for receiver_in_base in self._receivers_in_base:
+            yield base @ receiver_in_base
+
+    @cached_property
+    def _receivers_in_base(self) -> Tuple[Pose2, ...]:
+        bearings = (-self.dock_receiver_bearing, 0.0, self.dock_receiver_bearing)
+        return tuple(Pose2(0.0, 0.0, bearing) @ Pose2(self.dock_receiver_radius) for bearing in bearings)
 
     def signal(self, receiver_in_dock: Pose2) -> int:
         """Return the bits of what a receiver senses if nothing is in between."""

@@ -1,6 +1,6 @@
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Dict
+from typing import Dict, Optional
 
 from evaluation.options import GraphOptions, MissionOptions
 from supervision.command_line import option
@@ -30,6 +30,10 @@ class Service(GraphOptions, MissionOptions):
     @property
     def is_interactive(self) -> bool:
         return True
+
+    @property
+    def tool(self) -> Optional[str]:
+        return "service"
 
     def run(self) -> int:
         from evaluation.ros.run_modes import run_until_interrupted

@@ -1,16 +1,19 @@
 """Runs days of service event by event."""
 
 import math
+from collections import deque
 from dataclasses import dataclass, field
 from typing import Callable, List, Optional, Sequence
 
 from service.day.kinematic_robot import KinematicRobot
 from service.day.requests_by_hour import TimedRequest
 from service.errors import QueueFullError, RequestError
+from service.execution.robot import RobotEvent, RobotInputs, RobotOrder
 from service.request_service import RequestService
 from service.task import ServiceTask, TaskStatus
-from service.task_book import Changes
+from service.task_book import Changes, JournalEntry
 
+Store = Callable[[Changes, int], None]
 # Shortest time between two calls of the service [s].
 TICK = 0.5
 
@@ -22,12 +25,14 @@ class DayRecord:
     Attributes:
         ended: Tasks that have ended.
         refused: Reasons of refused requests.
+        log: Entries of the service's log.
         lowest_charge: Lowest charge of the battery, 0 to 1.
         calls: Number of calls of the service.
     """
 
     ended: List[ServiceTask] = field(default_factory=list)
     refused: List[str] = field(default_factory=list)
+    log: List[JournalEntry] = field(default_factory=list)
     lowest_charge: float = 1.0
     calls: int = 0
 
@@ -41,6 +46,63 @@ class DayRecord:
         """Tasks with a deadline that were done in time."""
         done = TaskStatus.COMPLETED
         return [task for task in self.with_deadline if task.status is done and not task.is_late]
+
+
+class RecordedService:
+    """A service that receives the requests of a day when they come, and a record of what comes of them.
+
+    Args:
+        service: The service.
+        requests: Requests in the order of their stamps.
+        record: Receives what happens.
+        store: Called with what changed after each call, before an order is carried out.
+    """
+
+    def __init__(
+        self,
+        service: RequestService,
+        requests: Sequence[TimedRequest],
+        record: DayRecord,
+        store: Store = lambda changes, number: None,
+    ):
+        self._service, self._record, self._store = service, record, store
+        self._coming = deque(requests)
+
+    def advance(self, now: float, robot: RobotInputs, event: Optional[RobotEvent]) -> Optional[RobotOrder]:
+        """Submit the requests that have come, advance the service and return its order.
+
+        Args:
+            now: Unix time [s].
+            robot: State of the robot.
+            event: What happened to the last order, if there is news.
+        """
+        self._submit(now)
+        record = self._record
+        record.lowest_charge = min(record.lowest_charge, robot.charge or 0.0)
+        record.calls += 1
+        order = self._service.advance(now, robot, event)
+        changes = self._service.take_changes()
+        if changes:
+            self._store(changes, self._service.book.next_number)
+            record.ended += [task for task in changes.tasks.values() if not task.is_open]
+            record.log += changes.log
+        return order
+
+    def wakes_at(self, now: float) -> float:
+        """Return when the service has to be called again, without news of the robot: Unix time [s]."""
+        coming = self._coming[0].stamp if self._coming else math.inf
+        return min(self._service.wakes_at(now), coming)
+
+    def activity(self, now: float) -> str:
+        """Return what the robot does."""
+        return str(self._service.state(now)["activity"])
+
+    def _submit(self, now: float) -> None:
+        while self._coming and self._coming[0].stamp <= now:
+            try:
+                self._service.submit(self._coming.popleft().document, now)
+            except (RequestError, QueueFullError) as error:
+                self._record.refused.append(str(error))
 
 
 class DayRun:
@@ -60,44 +122,24 @@ class DayRun:
         robot: KinematicRobot,
         requests: Sequence[TimedRequest],
         start: float,
-        store: Callable[[Changes, int], None] = lambda changes, number: None,
+        store: Store = lambda changes, number: None,
     ):
-        self._service, self._robot, self._requests = service, robot, list(requests)
-        self._now, self._store, self._next = start, store, 0
         self.record = DayRecord()
+        self._service = RecordedService(service, requests, self.record, store)
+        self._robot, self._now = robot, start
 
     def run(self, until: float) -> DayRecord:
         """Run to a Unix time [s]."""
         while self._now < until:
-            self._submit_due()
             event = self._robot.event(self._now)
-            inputs = self._robot.inputs(self._now)
-            self.record.lowest_charge = min(self.record.lowest_charge, inputs.charge or 0.0)
-            order = self._service.advance(self._now, inputs, event)
-            self._keep_changes()
+            order = self._service.advance(self._now, self._robot.inputs(self._now), event)
             self._robot.carry_out(order, self._now)
-            self.record.calls += 1
-            self._now = self._now + TICK if order is not None else max(self._now + TICK, self._next_time())
+            due = self._now if order is not None else self._next_time()
+            self._now = max(self._now + TICK, due)
         return self.record
 
     def _next_time(self) -> float:
-        due = self._requests[self._next].stamp if self._next < len(self._requests) else math.inf
-        return min(self._service.wakes_at(self._now), self._robot.next_event, due)
-
-    def _submit_due(self) -> None:
-        while self._next < len(self._requests) and self._requests[self._next].stamp <= self._now:
-            document = self._requests[self._next].document
-            self._next += 1
-            try:
-                self._service.submit(document, self._now)
-            except (RequestError, QueueFullError) as error:
-                self.record.refused.append(str(error))
-
-    def _keep_changes(self) -> None:
-        changes = self._service.take_changes()
-        if changes:
-            self._store(changes, self._service.book.next_number)
-            self.record.ended += [task for task in changes.tasks.values() if not task.is_open]
+        return min(self._service.wakes_at(self._now), self._robot.next_event)
 
 
 def kept_share(record: DayRecord) -> Optional[float]:

@@ -2,16 +2,14 @@
 
 import math
 from dataclasses import dataclass, field
-from typing import Any, Callable, List, Optional, Sequence, Tuple
+from typing import List, Optional, Sequence, Tuple
 
 from headless_mission.observers import ContactObserver
 from planar import Pose2
-from planar.errors import PlanarError
-from service.day.day_run import DayRecord
+from service.day.day_run import DayRecord, RecordedService, Store
 from service.day.episode_robot import EpisodeRobot
 from service.day.requests_by_hour import TimedRequest
 from service.request_service import RequestService
-from service.task_book import JournalEntry
 from sim_bridge import Episode, EpisodeHooks, Simulation, StepResult
 from sim_bridge.config import LATENCY
 from sim_bridge.faults import FaultInjector
@@ -46,7 +44,6 @@ class SimulatedDayRecord(DayRecord):
     Attributes:
         track: Unix time [s], true x, y [m] and yaw [rad], charge 0 to 1; one row a second that is stepped.
         activities: Unix time and text of each activity of the robot.
-        log: Entries of the service's log.
         contacts: Names of what the robot collided with by its own fault.
         empty_at: Unix time at which the battery was empty [s]; None if it never was.
         idle_seconds: Simulated time that was skipped [s].
@@ -55,7 +52,6 @@ class SimulatedDayRecord(DayRecord):
 
     track: List[Tuple[float, float, float, float, float]] = field(default_factory=list)
     activities: List[Tuple[float, str]] = field(default_factory=list)
-    log: List[JournalEntry] = field(default_factory=list)
     contacts: List[str] = field(default_factory=list)
     empty_at: Optional[float] = None
     idle_seconds: float = 0.0
@@ -88,15 +84,15 @@ class SimulatedDay(EpisodeHooks):
         requests: Sequence[TimedRequest],
         furniture: Sequence[FurnitureMove] = (),
         faults: Optional[FaultInjector] = None,
-        store: Callable[[Any, int], None] = lambda changes, number: None,
+        store: Store = lambda changes, number: None,
     ):
-        self._robot, self._service, self._origin, self._store = robot, service, start, store
-        self._requests, self._furniture = list(requests), list(furniture)
+        self.record = SimulatedDayRecord()
+        self._service = RecordedService(service, requests, self.record, store)
+        self._robot, self._origin, self._furniture = robot, start, list(furniture)
         self._observer = ContactObserver(simulation)
         period = robot.navigation.period
         hooks = (*robot.hooks, self, self._observer, robot.localization)
         self._episode = Episode(simulation, period, min(LATENCY, period), faults, hooks)
-        self.record = SimulatedDayRecord()
 
     @property
     def now(self) -> float:
@@ -119,14 +115,9 @@ class SimulatedDay(EpisodeHooks):
         """Let the service see the robot, and the robot its orders."""
         now, record = self._origin + step.stamp, self.record
         self._move_furniture(now)
-        self._submit(now)
-        inputs, event = self._robot.inputs(), self._robot.event(step.stamp)
-        record.lowest_charge = min(record.lowest_charge, inputs.charge or 0.0)
         if step.power is not None and step.power.is_empty and record.empty_at is None:
             record.empty_at = now
-        order = self._service.advance(now, inputs, event)
-        record.calls += 1
-        self._keep_changes()
+        order = self._service.advance(now, self._robot.inputs(), self._robot.event(step.stamp))
         self._robot.carry_out(order, step.stamp)
         self._note(now, step)
 
@@ -134,8 +125,7 @@ class SimulatedDay(EpisodeHooks):
         if self._robot.is_moving:
             return
         now, due = self.now, [until, self._service.wakes_at(self.now)]
-        coming = [each.stamp for each in self._requests[:1]] + [each.stamp for each in self._furniture[:1]]
-        due += [stamp for stamp in coming if stamp > now]
+        due += [each.stamp for each in self._furniture[:1] if each.stamp > now]
         if min(due) - now >= SHORTEST_IDLE and self._episode.idle(min(due) - self._origin):
             self.record.idle_seconds += self.now - now
 
@@ -150,22 +140,8 @@ class SimulatedDay(EpisodeHooks):
             height = float(scene.models.state(move.model).pose[2, 3])
             scene.set_model_state(move.model, at_rest(from_pose2(move.pose, z=height)))
 
-    def _submit(self, now: float) -> None:
-        while self._requests and self._requests[0].stamp <= now:
-            try:
-                self._service.submit(self._requests.pop(0).document, now)
-            except PlanarError as error:
-                self.record.refused.append(str(error))
-
-    def _keep_changes(self) -> None:
-        changes = self._service.take_changes()
-        if changes:
-            self._store(changes, self._service.book.next_number)
-            self.record.ended += [task for task in changes.tasks.values() if not task.is_open]
-            self.record.log += changes.log
-
     def _note(self, now: float, step: StepResult) -> None:
-        record, activity = self.record, str(self._service.state(now)["activity"])
+        record, activity = self.record, self._service.activity(now)
         if not record.activities or record.activities[-1][1] != activity:
             record.activities.append((now, activity))
         if not record.track or now - record.track[-1][0] >= RECORD_SECONDS - 1e-6:

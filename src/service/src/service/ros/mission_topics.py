@@ -1,6 +1,7 @@
-"""The service as a mission: markers, cockpit and judges follow ``pick_objects/mission_state``."""
+"""The service as a mission: markers, cockpit and judges follow ``pick_objects/mission_state``; its queue."""
 
-from typing import Any, List, Tuple
+import json
+from typing import Any, Dict, List, Tuple
 
 import rospy
 from home_service_msgs.msg import Delivery, DeliveryState, MissionState, ObjectState
@@ -10,13 +11,16 @@ from pick_objects.mission import Mission
 from planar import Pose2
 from planar_ros.messages.conversion import pose2_to_msg
 from planar_ros.node.topics import flush_and_close
+from service.history import description_text
 from service.request_service import RequestService
 from service.requests.request import Deliver, Fetch
 from service.requests.steps import Drive, DriveToObject, PickUp, SetDown
-from service.task import ServiceTask, TaskStatus
+from service.task import ServiceTask, TaskStatus, task_to_json
 
-# Deliveries in a message.
+# Deliveries, or requests, in a message.
 MAX_SHOWN = 50
+# Change of the planned end of a request that is published [s].
+ESTIMATE_STEP = 5.0
 STAGE_OF_STEP = {
     Drive: DeliveryState.FETCHING,
     DriveToObject: DeliveryState.FETCHING,
@@ -43,11 +47,14 @@ class MissionTopics:
         options = {"queue_size": 50, "latch": True}
         self._mission_state = rospy.Publisher("pick_objects/mission_state", MissionState, **options)
         self._state = rospy.Publisher("pick_objects/state", String, **options)
+        self._service_state = rospy.Publisher("~state", String, **options)
         self._published: Tuple[Any, ...] = ()
+        self._published_queue: Tuple[Any, ...] = ()
 
     def publish(self, service: RequestService, now: float) -> None:
         """Publish what has changed since the last call; ``now`` is Unix time [s]."""
         state = service.state(now)
+        self._publish_queue(service, state)
         stages = tuple((task.id, task.status, task.step) for task in service.book.tasks.values())
         news = (state["activity"], stages[:MAX_SHOWN], tuple(service.book.objects.items()))
         if news == self._published:
@@ -59,7 +66,18 @@ class MissionTopics:
 
     def flush(self) -> None:
         """Publish the last state to all subscribers."""
-        flush_and_close(self._state, self._mission_state)
+        flush_and_close(self._state, self._mission_state, self._service_state)
+
+    def _publish_queue(self, service: RequestService, state: Dict[str, Any]) -> None:
+        """Publish battery, activity and the open requests in the order of the plan, if they have changed."""
+        charge = None if state["charge"] is None else round(state["charge"], 2)
+        tasks = sorted(service.book.tasks.values(), key=_position)
+        queue = tuple((each.id, each.status, round((each.estimate or 0.0) / ESTIMATE_STEP)) for each in tasks)
+        news = (state["activity"], state["is_docked"], charge, queue)
+        if news != self._published_queue:
+            self._published_queue = news
+            shown = [{**task_to_json(each), "text": description_text(each)} for each in tasks[:MAX_SHOWN]]
+            self._service_state.publish(json.dumps({"state": state, "tasks": shown}))
 
     def message(self, service: RequestService, now: float) -> MissionState:
         """Return the present state."""
@@ -93,6 +111,11 @@ class MissionTopics:
             color=ColorRGBA(*item.color, 1.0),
             is_solid=item.solid,
         )
+
+
+def _position(task: ServiceTask) -> Tuple[bool, float]:
+    """Return a key by which the task under way comes first, then the others as they are planned."""
+    return task.status is not TaskStatus.UNDERWAY, task.estimate or float("inf")
 
 
 def delivery_states(tasks: List[ServiceTask]) -> List[DeliveryState]:

@@ -12,7 +12,7 @@ import rospy
 from pick_objects import Mission, load_mission
 from planar import OccupancyGrid, Pose2
 from planar.geometry.pose import pose_of_text
-from planar.maps.places import load_places, unreachable_reason
+from planar.maps.places import load_places, obstruction_at, unreachable_reason
 from planar_ros.lockstep import LockstepClient
 from planar_ros.messages.conversion import OccupancyGridArrays, grid_from_msg
 from planar_ros.messages.validation import subscribe
@@ -31,6 +31,7 @@ from service.requests.parser import Knowledge
 from service.ros.deliver_action import RosRequests
 from service.ros.mission_topics import MissionTopics
 from service.ros.robot_client import RobotClient
+from service.task_book import JournalEntry
 
 POLL_SECONDS = 0.02
 JOURNAL_FILE = "journal.db"
@@ -72,6 +73,7 @@ class ServiceNode:
         move_base = self._robot.navigation.move_base
         self._wait_for({move_base.name: move_base.is_ready})
         self._submit_mission()
+        self._host.listen(0, _warn)
         self._http.start()
         rospy.loginfo("requests at %s; %d are open", self._http.url, len(self._service.book.tasks))
         while not rospy.is_shutdown():
@@ -92,12 +94,19 @@ class ServiceNode:
         assert self._host.service is not None
         return self._host.service
 
+    @property
+    def _staging(self) -> Optional[Pose2]:
+        """Pose before the dock, facing it; None without a dock."""
+        if not self._settings.dock:
+            return None
+        dock = pose_of_text(self._settings.dock, "~dock")
+        return dock @ Pose2(self._settings.staging_distance, 0.0, math.pi)
+
     def _make(self, journal: Journal) -> RequestService:
-        dock = pose_of_text(self._settings.dock, "~dock") if self._settings.dock else None
         assert self._map is not None
-        staging = None if dock is None else dock @ Pose2(self._settings.staging_distance, 0.0, math.pi)
-        around = PlanningModel(GridTravelTimes(self._map, self._settings.speed), self._energy, staging)
-        known = Knowledge(tuple(self._mission.places), dock is not None)
+        travel, staging = GridTravelTimes(self._map, self._settings.speed), self._staging
+        around = PlanningModel(travel, self._energy, staging)
+        known = Knowledge(tuple(self._mission.places), staging is not None)
         site = Site(self._mission.places, around, known)
         return RequestService(site, self._service_settings, journal.restore(), find_ended=journal.ended_task)
 
@@ -122,6 +131,13 @@ class ServiceNode:
             problem = unreachable_reason(place, self._map)
             if problem:
                 fail(problem)
+        staging = self._staging
+        problem = None if staging is None else obstruction_at(staging, self._map)
+        if staging is not None and problem:
+            before = (
+                f"({staging.x:.2f}, {staging.y:.2f}), {self._settings.staging_distance:g} m before the dock,"
+            )
+            fail(f"{before} {problem}; the pose of the dock is that of its front, facing the robot")
 
     def _wait_for(self, required: Dict[str, Callable[[], bool]]) -> None:
         """Wait for what is required; end the node if it does not come."""
@@ -135,6 +151,12 @@ class ServiceNode:
 
     def _keep_map(self, message: OccupancyGridArrays) -> None:
         self._map = grid_from_msg(message)
+
+
+def _warn(_number: int, entry: JournalEntry) -> None:
+    """Log an entry of the service's log that people should act on."""
+    if entry.kind == "battery":
+        rospy.logwarn("%s", entry.text)
 
 
 def _settings() -> Tuple[NodeSettings, ServiceSettings, EnergySettings]:

@@ -1,7 +1,7 @@
 """The power system of a robot: battery, motors and charger."""
 
 from dataclasses import dataclass
-from typing import Sequence, Tuple
+from typing import Dict, Sequence, Tuple
 
 from sim_bridge.power.battery import Battery, BatteryProfile, BatterySettings, ChargerState
 from sim_bridge.power.motors import MotorProfile
@@ -51,6 +51,8 @@ class PowerSystem:
         self._angles: Tuple[float, ...] = ()
         self._speeds: Tuple[float, ...] = ()
         self._motor_currents: Tuple[float, ...] = ()
+        # Readings by whether the robot is on a dock, which hold until the next update.
+        self._readings: Dict[bool, PowerReading] = {}
 
     @property
     def is_empty(self) -> bool:
@@ -67,6 +69,7 @@ class PowerSystem:
             angles: Angles of the driven wheels [rad].
             is_on_dock: Whether the robot touches the contacts of a dock.
         """
+        self._readings.clear()
         before = self._angles or angles
         speeds = tuple((now - then) / seconds for now, then in zip(angles, before))
         changes = [now - then for now, then in zip(speeds, self._speeds or speeds)]
@@ -85,6 +88,11 @@ class PowerSystem:
         Args:
             is_on_dock: Whether the robot touches the contacts of a dock.
         """
+        if is_on_dock not in self._readings:
+            self._readings[is_on_dock] = self._measure(is_on_dock)
+        return self._readings[is_on_dock]
+
+    def _measure(self, is_on_dock: bool) -> PowerReading:
         battery, charger = self._battery, ChargerState.DISCHARGING
         if is_on_dock and not battery.is_empty:
             charger = ChargerState.DOCKING_CHARGED if battery.is_full else ChargerState.DOCKING_CHARGING

@@ -5,8 +5,7 @@ from typing import Dict, List, Optional, Sequence, Tuple
 import numpy as np
 
 from planar import Pose2, Twist2
-from planar.geometry.dock_field import DockField
-from sim_bridge.geometry.pose3 import to_pose2
+from planar.geometry.dock_field import ROBOT_FRONT, DockField
 from sim_bridge.physics.collision_queries import Contact
 from sim_bridge.physics.kinematics import KinematicState
 from sim_bridge.physics.vehicle import Vehicle, twist_in_base
@@ -34,6 +33,7 @@ class RobotSensorContext:
         self._base: Optional[KinematicState] = None
         self._twist: Optional[Twist2] = None
         self._wheels: Optional[Wheels] = None
+        self._docks: Optional[List[Pose2]] = None
         self._bumps: Dict[str, Contact] = {}
 
     def record_contacts(self) -> None:
@@ -52,7 +52,7 @@ class RobotSensorContext:
             stamp: Simulated time [s].
         """
         self.stamp = stamp
-        self._base = self._twist = self._wheels = None
+        self._base = self._twist = self._wheels = self._docks = None
 
     @property
     def gravity(self) -> float:
@@ -94,7 +94,9 @@ class RobotSensorContext:
         return lengths, np.array([retros[link] for link in links])
 
     def docks(self) -> List[Pose2]:
-        return self._view.docks()
+        if self._docks is None:
+            self._docks = self._view.docks()
+        return self._docks
 
     @property
     def power(self) -> Optional[PowerReading]:
@@ -105,8 +107,9 @@ class RobotSensorContext:
         docks = self.docks()
         if not docks or self._power is None or not self._power.profile.fits_dock:
             return False
-        base = to_pose2(self.base.pose)
-        return any(self._field.has_contact(dock.inverse() @ base) for dock in docks)
+        base, reach = self.base.pose2, 2.0 * ROBOT_FRONT + self._field.dock_contact_distance
+        near = (dock for dock in docks if dock.distance_to(base) < reach)
+        return any(self._field.has_contact(dock.inverse() @ base) for dock in near)
 
     def triangles(self) -> Tuple[np.ndarray, np.ndarray]:
         return self._view.triangles(self._vehicle.name)

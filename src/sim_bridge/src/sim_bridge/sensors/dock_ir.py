@@ -9,7 +9,6 @@ import numpy as np
 from planar import Pose2
 from planar.geometry.dock_field import DockField
 from sim_bridge.config import SimulationSettings
-from sim_bridge.geometry.pose3 import to_pose2
 from sim_bridge.sensors.base import Mounting, Schedule, SensorContext, every
 from sim_bridge.views.section import cast_beams
 
@@ -48,7 +47,7 @@ class DockIrSensor:
         return every(None, settings)
 
     def measure(self, context: SensorContext) -> DockSignals:
-        bits, base = [0, 0, 0], to_pose2(context.base.pose)
+        bits, base = [0, 0, 0], context.base.pose2
         for dock in context.docks():
             self._add(bits, dock, base, context)
         return bits[0], bits[1], bits[2]
