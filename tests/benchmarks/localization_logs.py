@@ -74,9 +74,10 @@ def main() -> int:
                     node = start(player, grid, drive[0].base_in_map, seed)
                     try:
                         label = f"{path.stem:20} {options.map:6} {name:10} {seed:3}"
-                        lost[name].append(print_tracking(label, *measure(node, drive)))
+                        rows, cpu = measure(node, drive)
+                        lost[name].append(print_tracking(label, rows, cpu))
                         if options.recovery:
-                            print_recovery(node, drive)
+                            print_recovery(node, drive, rows)
                     finally:
                         node.close()
     finally:
@@ -111,16 +112,18 @@ def print_tracking(label: str, rows: np.ndarray, cpu: float) -> float:
     return float(100.0 * is_lost.mean())
 
 
-def print_recovery(node: Localizer, drive: List[Observation]) -> None:
-    """Print how often and how soon the node finds the robot again."""
+def print_recovery(node: Localizer, drive: List[Observation], tracked: np.ndarray) -> None:
+    """Print how often and how soon the node finds the robot again, and the quality also over ``tracked``."""
+    every = [tracked[:, [0, 2]]]
     for kind in ("wrong by 1 m, 30 deg", "elsewhere"):
         starts = np.linspace(5, len(drive) - WITHIN - 5, STARTS).astype(int).tolist()
         results = [recovered(node, drive, first, kind, number) for number, first in enumerate(starts)]
         found = [scans for scans, _ in results if scans is not None]
-        rows = np.concatenate([rows for _, rows in results])
+        every += [rows for _, rows in results]
         median = f"{np.median(found):.0f}" if found else "-"
-        area = area_under_roc(rows[:, 1], rows[:, 0] <= LOST_BEYOND)
-        print(f"    {kind:22} {len(found)} of {STARTS} after {median} scans, quality {area:.3f}", flush=True)
+        print(f"    {kind:22} {len(found)} of {STARTS} after {median} scans", flush=True)
+    rows = np.concatenate(every)
+    print(f"    quality over all {area_under_roc(rows[:, 1], rows[:, 0] <= LOST_BEYOND):.3f}", flush=True)
 
 
 def recovered(
