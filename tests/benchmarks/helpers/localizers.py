@@ -1,4 +1,4 @@
-"""Localization nodes behind one interface: amcl and amcl_lite, and als_ros, which has topics of its own."""
+"""Localization nodes behind one interface: amcl and amcl_lite, and als_ros with its custom topics."""
 
 import math
 import subprocess

@@ -346,8 +346,7 @@ def _add(
     inner,
 ):
     c, s = math.cos(yaw), math.sin(yaw)
-    side, parts, width = len(nearest), len(largest), largest.shape[2]
-    reach, border = _REACH_CELLS, BORDER_CELLS + _REACH_CELLS
+    side, border = len(nearest), BORDER_CELLS + _REACH_CELLS
     for i in range(len(points)):
         px, py = x + c * points[i, 0] - s * points[i, 1], y + s * points[i, 0] + c * points[i, 1]
         u, v = px / resolution, py / resolution
@@ -365,23 +364,31 @@ def _add(
         map_points[count, 0], map_points[count, 1] = px, py
         map_normals[count, 0] = c * normals[i, 0] - s * normals[i, 1]
         map_normals[count, 1] = s * normals[i, 0] + c * normals[i, 1]
-        bounds = largest[int((v - row) * parts), int((u - col) * parts)]
-        first = col - reach
-        for j in range(width):
-            r = row - reach + j
-            bound, line, along_y = bounds[j], likelihood[r, first : first + width], (r + 0.5 - v) ** 2
-            for k in range(width):
-                if bound[k] < line[k]:
-                    continue  # without its distance: another point is nearer, wherever this one is
-                squared = (first + k + 0.5 - u) ** 2 + along_y
-                if kernel[int(squared)] < line[k]:
-                    continue  # the likelihood alone shows that another point is nearer
-                old = nearest[r, first + k]
-                if old >= 0:
-                    du, dv = map_points[old, 0] / resolution, map_points[old, 1] / resolution
-                    if squared >= (first + k + 0.5 - du) ** 2 + (r + 0.5 - dv) ** 2:
-                        continue
-                nearest[r, first + k] = count
-                line[k] = kernel[int(squared)]
+        _update_cells(nearest, likelihood, map_points, count, u, v, resolution, kernel, largest)
         count += 1
     return count
+
+
+@numba.njit(cache=True, nogil=True)
+def _update_cells(nearest, likelihood, map_points, number, u, v, resolution, kernel, largest):
+    """Store a new point at (u, v), in cells, in the cells around it to which no other one is nearer."""
+    parts, width = len(largest), largest.shape[2]
+    col, row = int(math.floor(u)), int(math.floor(v))
+    bounds = largest[int((v - row) * parts), int((u - col) * parts)]
+    first = col - _REACH_CELLS
+    for j in range(width):
+        r = row - _REACH_CELLS + j
+        bound, line, along_y = bounds[j], likelihood[r, first : first + width], (r + 0.5 - v) ** 2
+        for k in range(width):
+            if bound[k] < line[k]:
+                continue  # without its distance: another point is nearer, wherever this one is
+            squared = (first + k + 0.5 - u) ** 2 + along_y
+            if kernel[int(squared)] < line[k]:
+                continue  # the likelihood alone shows that another point is nearer
+            old = nearest[r, first + k]
+            if old >= 0:
+                du, dv = map_points[old, 0] / resolution, map_points[old, 1] / resolution
+                if squared >= (first + k + 0.5 - du) ** 2 + (r + 0.5 - dv) ** 2:
+                    continue
+            nearest[r, first + k] = number
+            line[k] = kernel[int(squared)]
