@@ -369,7 +369,7 @@ def _add(
     return count
 
 
-@numba.njit(cache=True, nogil=True)
+@numba.njit(cache=True, nogil=True, inline="always")
 def _update_cells(nearest, likelihood, map_points, number, u, v, resolution, kernel, largest):
     """Store a new point at (u, v), in cells, in the cells around it to which no other one is nearer."""
     parts, width = len(largest), largest.shape[2]
