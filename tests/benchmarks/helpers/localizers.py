@@ -93,7 +93,8 @@ class AlsRos:
         parameters = {**ALS_ROS, **{f"initial_pose_{name}": value for name, value in initial.items()}}
         for name, value in {**parameters, "mae_classifier_dir": f"{classifier}/"}.items():
             rospy.set_param("/mcl/" + name, value)
-        self._player, self._last, self._estimate = player, None, start
+        self._player, self._estimate = player, start
+        self._last: Optional[Pose2] = None
         self._quality = math.nan
         self._answers: Dict[int, Pose2] = {}
         self._reliabilities: Dict[int, float] = {}
