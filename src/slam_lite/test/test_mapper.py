@@ -6,7 +6,9 @@ import pytest
 
 from planar import OCCUPIED, OccupancyGrid, Pose2, wrap
 from planar.maps.map_score import score_map
+from slam_lite.back_end import without_excess
 from slam_lite.config import MapperSettings
+from slam_lite.graph.pose_graph import chi_squares
 from slam_lite.map_localizer import MapLocalizer
 from slam_lite.mapper import Mapper
 from slam_lite.rendering import Evidence, SessionRenderer, beams_of
@@ -67,6 +69,18 @@ def test_the_same_drive_gives_the_same_poses_bit_for_bit(drive, mapper):
 
 def test_a_loop_is_closed(mapper):
     assert mapper.loop_count > 0
+
+
+def test_the_final_weights_promise_no_more_than_the_matches_keep(office):
+    drive = office.drive(seed=4)
+    mapper, updates = mapped(drive)
+    true = [s.base_in_map.as_array() for s, update in zip(drive, updates) if update and update.is_keyframe]
+    edges = mapper.state().edges
+    cautious, final = (
+        chi_squares(np.array(true), each)[~edges.is_loop] for each in (edges, without_excess(edges))
+    )
+    assert 1.5 * cautious.mean() < final.mean() < 3.0
+    assert np.mean(final > 9.0) < 0.03
 
 
 def test_deferred_closures_find_the_same_loops(drive, mapper):

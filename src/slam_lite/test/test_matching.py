@@ -56,6 +56,23 @@ def test_kernels_recognize_the_type_of_a_local_map_from_call_to_call():
     assert max(len(key) for key in keys) <= 40
 
 
+def test_each_cell_near_a_point_stores_its_nearest_one():
+    rng, local_map = np.random.default_rng(5), LocalMap(0.05, 2.0)
+    local_map.clear(Pose2())
+    for _ in range(8):
+        points = rng.uniform(-1.0, 1.0, (40, 2)).astype(np.float32)
+        local_map.add(PointCloud(points, np.zeros_like(points)), Pose2(0.1, -0.2, 0.7))
+    points = local_map.points_xy[: local_map.count] / local_map.resolution
+    rows, cols = np.nonzero(local_map.nearest >= 0)
+    centers = np.column_stack((cols, rows)) + 0.5
+    stored = np.hypot(*(centers - points[local_map.nearest[rows, cols]]).T)
+    distances = np.hypot(*(centers[:, None] - points).transpose(2, 0, 1))
+    is_in_square = np.abs(np.floor(points) + 0.5 - centers[:, None]).max(axis=2) <= 6.0
+    np.testing.assert_allclose(stored, np.where(is_in_square, distances, np.inf).min(axis=1), atol=1e-4)
+    expected = 255.0 * np.exp(-0.125 * np.floor(stored**2))
+    assert np.mean(np.abs(local_map.likelihood[rows, cols] - expected) <= 0.5) > 0.999
+
+
 def test_refinement_finds_the_step_between_two_scans_to_a_centimetre(office):
     there = HERE @ Pose2(0.3, 0.02, 0.1)
     match = refine(cloud_at(office, there), local_map_at(office, HERE), HERE, HERE, NO_PRIOR)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from planar import Pose2
-from slam_lite.graph.pose_graph import Edge, EdgeList, chi_squares, edges_of, optimize
+from slam_lite.graph.pose_graph import Edge, EdgeList, chi_squares, deflate, edges_of, inflate, optimize
 
 PRECISE = np.diag([1e4, 1e4, 1e5])
 VAGUE = np.diag([1e3, 1e3, 1e3])
@@ -78,6 +78,15 @@ def test_false_closures_that_agree_do_not_undo_right_ones(poses, steps):
     ]
     optimized = optimize(true, edges_of(*steps, *right, *false), 1e-6, new_count=len(false))
     assert farthest(poses, optimized) < 0.1
+
+
+def test_an_error_that_is_added_to_an_edge_can_be_removed(poses):
+    degenerate = np.diag([0.0, 2e4, 3e5])
+    edges = edges_of(edge(poses, 3, 9), edge(poses, 0, 1, degenerate, is_loop=True))
+    inflated = edges_of(*(inflate(edges[number], 0.03, 0.005) for number in range(2)))
+    assert inflated.information[0, 0, 0] < 0.2 * edges.information[0, 0, 0]
+    variances = np.square([[0.03, 0.03, 0.005]] * 2)
+    np.testing.assert_allclose(deflate(inflated, variances).information, edges.information, rtol=1e-6)
 
 
 def test_the_first_node_stays_fixed(poses, steps):

@@ -18,7 +18,7 @@ from tf2_msgs.msg import TFMessage
 from tf2_ros import StaticTransformBroadcaster
 
 from helpers.drives import Observation
-from planar import OccupancyGrid, Pose2
+from planar import OccupancyGrid, Pose2, Scan
 from planar_ros.messages.conversion import (
     GetMapArrays,
     LaserScanArrays,
@@ -80,7 +80,7 @@ class Player:
         for name, value in {**parameters, "transform_tolerance": TOLERANCE}.items():
             rospy.set_param("/amcl/" + name, value)
         node = Node([*command, "__name:=amcl"])
-        self._tick()
+        self.tick()
         rospy.wait_for_service("global_localization", START_SECONDS)
         while self._scans.get_num_connections() == 0:
             time.sleep(0.05)
@@ -102,16 +102,27 @@ class Player:
         Returns:
             Odometry frame in the map; None without an answer.
         """
-        self._now += period
-        stamp = rospy.Time.from_sec(round(self._now, 3))
+        stamp = self.advance(period)
         key = (stamp + rospy.Duration(TOLERANCE)).to_nsec()
-        self._tick()
+        self.tick()
         base = transform_msg(observation.base_in_odom, "odom", "base_footprint", stamp)
         self._tf.publish(TFMessage([base]))
-        self._scans.publish(_scan_message(observation.scan, stamp))
+        self.publish_scan(observation.scan, stamp)
         with self._has_answer:
             self._has_answer.wait_for(lambda: key in self._answers, patience)
             return self._answers.pop(key, None)
+
+    def advance(self, period: float) -> rospy.Time:
+        """Advance the time, without publishing it, and return it."""
+        self._now += period
+        return rospy.Time.from_sec(round(self._now, 3))
+
+    def publish_scan(self, scan: Scan, stamp: rospy.Time) -> None:
+        self._scans.publish(_scan_message(scan, stamp))
+
+    def tick(self) -> None:
+        """Publish the time."""
+        self._clock.publish(Clock(rospy.Time.from_sec(round(self._now, 3))))
 
     def set_pose(self, base_in_map: Pose2, variances=(0.25, 0.25, 0.0685)) -> None:
         message = PoseWithCovarianceStamped()
@@ -126,9 +137,6 @@ class Player:
 
     def localize_globally(self) -> None:
         rospy.ServiceProxy("global_localization", Empty)()
-
-    def _tick(self):
-        self._clock.publish(Clock(rospy.Time.from_sec(round(self._now, 3))))
 
     def _on_tf(self, message):
         for transform in message.transforms:

@@ -154,6 +154,22 @@ def inflate(edge: Edge, sigma_xy: float, sigma_yaw: float) -> Edge:
     return Edge(edge.first, edge.second, edge.second_in_first, information, edge.is_loop)
 
 
+def deflate(edges: Edges, variances: np.ndarray) -> Edges:
+    """Remove an independent error from edges, the reverse of ``inflate``.
+
+    Args:
+        edges: Edges of the graph, E.
+        variances: (E, 3), of the error in x, y and yaw [m^2, m^2, rad^2], smaller than those of the edges.
+
+    Returns:
+        The same edges with more information.
+    """
+    information = edges.information
+    # The inverse of a difference of covariances, also of a degenerate match, which has no covariance.
+    information = np.linalg.solve(np.eye(3) - information * variances[:, None], information)
+    return Edges(edges.nodes, edges.measured, information, edges.is_loop)
+
+
 def optimize(poses: np.ndarray, edges: Edges, tolerance: float, new_count: int = 0) -> np.ndarray:
     """Find the poses that fit the edges best; node 0 stays fixed.
 

@@ -29,7 +29,7 @@ _MIN_RECOGNIZED_DISTANCE = 11.0
 # Difference [m] above which two loop closures place the robot differently.
 _CONTRADICTION = 3.0
 # Errors of a loop closure that its match does not include: metres and radians.
-_SIGMA_XY, _SIGMA_YAW = 0.02, 0.005
+SIGMA_XY, SIGMA_YAW = 0.02, 0.005
 # Chi-square, given the graph's covariance, above which a loop closure needs confirmation. The covariance is
 # pessimistic: fewer than one in a hundred correct loop closures exceed it.
 _MAX_CHI_SQUARE = 6.0
@@ -57,7 +57,7 @@ class LoopClosure:
     @property
     def graph_edge(self) -> Edge:
         """Edge to add to the graph, with the errors that the match does not include."""
-        return inflate(self.edge, _SIGMA_XY, _SIGMA_YAW)
+        return inflate(self.edge, SIGMA_XY, SIGMA_YAW)
 
     @property
     def witnesses_needed(self) -> int:

@@ -272,12 +272,16 @@ def match_places(recent: PlaceDescriptor, places: Sequence[PlaceDescriptor]) -> 
         for quarters, spectra in enumerate(rotated):
             similarity[quarters, block], best[quarters, block] = _compare(stacked, spectra)
     found = [
-        _hypothesis(places[i], recent, quarters, _SHIFTS[best[quarters, i]] * _BIN, similarity[quarters, i])
+        (similarity[quarters, i], quarters, i)
         for quarters in range(4)
         for i in np.argsort(-similarity[quarters])[:_MAX_HYPOTHESES]
         if similarity[quarters, i] > _MIN_SIMILARITY
     ]
-    return sorted(found, key=lambda hypothesis: -hypothesis.similarity)[:_MAX_HYPOTHESES]
+    found.sort(key=lambda each: -each[0])
+    return [
+        _hypothesis(places[i], recent, quarters, _SHIFTS[best[quarters, i]] * _BIN, likeness)
+        for likeness, quarters, i in found[:_MAX_HYPOTHESES]
+    ]
 
 
 def _compare(stacked: np.ndarray, spectra: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:

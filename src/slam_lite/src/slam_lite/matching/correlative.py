@@ -253,7 +253,8 @@ def _project(points, x, y, yaw, resolution, col, row):
 
 def _cropped(likelihood: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
     """The non-empty part of a grid, with an empty border, and its first (col, row)."""
-    bounds = [np.flatnonzero(likelihood.any(axis=axis)) for axis in (0, 1)]
+    # Along the first axis the maximum is much faster than any().
+    bounds = [np.flatnonzero(likelihood.max(axis=0)), np.flatnonzero(likelihood.any(axis=1))]
     if len(bounds[0]) == 0:
         return likelihood[:1, :1], np.zeros(2)
     (left, right), (low, high) = (

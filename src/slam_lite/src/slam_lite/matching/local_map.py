@@ -22,6 +22,9 @@ _REACH_CELLS = 6
 _SIGMA_CELLS = 2.0
 # A point nearer than this to one of the map is not added, cells.
 _SAME = 0.5
+# Parts of a cell, along each axis, for which the largest likelihoods around it are stored; and more than the
+# rounding errors of a squared distance, cells^2.
+_CELL_PARTS, _ROUNDING = 16, 1e-6
 # Cells along the border that stay empty, so that a search window may extend past it.
 BORDER_CELLS = 16
 # Points farther away than this [m] soon leave the fine grid; the share of them from which on the coarse one
@@ -127,6 +130,7 @@ class LocalMap:
             base_pose.yaw,
             self.resolution,
             _LIKELIHOOD,
+            _LARGEST_LIKELIHOOD,
             inner / self.resolution,
         )
 
@@ -300,6 +304,24 @@ def _likelihood_kernel() -> np.ndarray:
 _LIKELIHOOD = _likelihood_kernel()
 
 
+def _largest_likelihood() -> np.ndarray:
+    """Largest likelihood that a point gives the cells around it, wherever it lies in a part of its cell.
+
+    Returns:
+        uint8 (parts, parts, side, side), by the point's part in y and in x, and by the row and column of the
+        other cell.
+    """
+    parts = np.arange(_CELL_PARTS) / _CELL_PARTS
+    centers = np.arange(-_REACH_CELLS, _REACH_CELLS + 1) + 0.5
+    apart = np.maximum(parts[:, None] - centers, centers - parts[:, None] - 1.0 / _CELL_PARTS)
+    nearest = np.maximum(apart, 0.0) ** 2
+    squared = nearest[:, None, :, None] + nearest[None, :, None, :]
+    return _LIKELIHOOD[np.maximum(squared - _ROUNDING, 0.0).astype(np.int64)]
+
+
+_LARGEST_LIKELIHOOD = _largest_likelihood()
+
+
 def _grown(array: np.ndarray, needed: int) -> np.ndarray:
     grown = np.empty((max(needed, 2 * len(array)), 2), dtype=np.float32)
     grown[: len(array)] = array
@@ -308,14 +330,27 @@ def _grown(array: np.ndarray, needed: int) -> np.ndarray:
 
 @numba.njit(cache=True, nogil=True)
 def _add(
-    nearest, likelihood, map_points, map_normals, count, points, normals, x, y, yaw, resolution, kernel, inner
+    nearest,
+    likelihood,
+    map_points,
+    map_normals,
+    count,
+    points,
+    normals,
+    x,
+    y,
+    yaw,
+    resolution,
+    kernel,
+    largest,
+    inner,
 ):
     c, s = math.cos(yaw), math.sin(yaw)
-    side = len(nearest)
-    reach, border = _REACH_CELLS, BORDER_CELLS + _REACH_CELLS
+    side, border = len(nearest), BORDER_CELLS + _REACH_CELLS
     for i in range(len(points)):
         px, py = x + c * points[i, 0] - s * points[i, 1], y + s * points[i, 0] + c * points[i, 1]
-        col, row = int(math.floor(px / resolution)), int(math.floor(py / resolution))
+        u, v = px / resolution, py / resolution
+        col, row = int(math.floor(u)), int(math.floor(v))
         if not (border <= col < side - border and border <= row < side - border):
             continue
         if abs(col - 0.5 * side) < inner and abs(row - 0.5 * side) < inner:
@@ -329,18 +364,31 @@ def _add(
         map_points[count, 0], map_points[count, 1] = px, py
         map_normals[count, 0] = c * normals[i, 0] - s * normals[i, 1]
         map_normals[count, 1] = s * normals[i, 0] + c * normals[i, 1]
-        u, v = px / resolution, py / resolution
-        for r in range(row - reach, row + reach + 1):
-            for q in range(col - reach, col + reach + 1):
-                squared = (q + 0.5 - u) ** 2 + (r + 0.5 - v) ** 2
-                if kernel[int(squared)] < likelihood[r, q]:
-                    continue  # the likelihood alone shows that another point is nearer
-                old = nearest[r, q]
-                if old >= 0:
-                    du, dv = map_points[old, 0] / resolution, map_points[old, 1] / resolution
-                    if squared >= (q + 0.5 - du) ** 2 + (r + 0.5 - dv) ** 2:
-                        continue
-                nearest[r, q] = count
-                likelihood[r, q] = kernel[int(squared)]
+        _update_cells(nearest, likelihood, map_points, count, u, v, resolution, kernel, largest)
         count += 1
     return count
+
+
+@numba.njit(cache=True, nogil=True, inline="always")
+def _update_cells(nearest, likelihood, map_points, number, u, v, resolution, kernel, largest):
+    """Store a new point at (u, v), in cells, in the cells around it to which no other one is nearer."""
+    parts, width = len(largest), largest.shape[2]
+    col, row = int(math.floor(u)), int(math.floor(v))
+    bounds = largest[int((v - row) * parts), int((u - col) * parts)]
+    first = col - _REACH_CELLS
+    for j in range(width):
+        r = row - _REACH_CELLS + j
+        bound, line, along_y = bounds[j], likelihood[r, first : first + width], (r + 0.5 - v) ** 2
+        for k in range(width):
+            if bound[k] < line[k]:
+                continue  # without its distance: another point is nearer, wherever this one is
+            squared = (first + k + 0.5 - u) ** 2 + along_y
+            if kernel[int(squared)] < line[k]:
+                continue  # the likelihood alone shows that another point is nearer
+            old = nearest[r, first + k]
+            if old >= 0:
+                du, dv = map_points[old, 0] / resolution, map_points[old, 1] / resolution
+                if squared >= (first + k + 0.5 - du) ** 2 + (r + 0.5 - dv) ** 2:
+                    continue
+            nearest[r, first + k] = number
+            line[k] = kernel[int(squared)]

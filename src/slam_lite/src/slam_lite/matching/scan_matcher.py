@@ -137,8 +137,8 @@ class CorrelativeMatcher:
         """Search the window exhaustively and refine the best pose (see ``ScanMatcher.match``)."""
         predicted, variance = prediction.base_pose, prediction.variance
         window = SearchWindow(
-            float(np.clip(3.0 * math.sqrt(variance[0]), 0.1, 0.4)),
-            float(np.clip(3.0 * math.sqrt(variance[2]), 0.1, 0.5)),
+            min(max(3.0 * math.sqrt(variance[0]), 0.1), 0.4),
+            min(max(3.0 * math.sqrt(variance[2]), 0.1), 0.5),
         )
         start = search_exhaustively(
             cloud, local_map, predicted, window, prediction.search_variance, prediction.unseen_fraction

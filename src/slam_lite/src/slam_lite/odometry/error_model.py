@@ -54,9 +54,12 @@ class OdometryErrorModel:
 
     def variance(self, motion: Pose2) -> np.ndarray:
         """Compute the variances (3,) of a corrected motion [m^2, m^2, rad^2]."""
-        xy, yaw = np.clip(self._squares / self._count, _MIN_SHARE, 1.0)
+        return self._learned_variance(self.nominal_variance(motion))
+
+    def _learned_variance(self, nominal: np.ndarray) -> np.ndarray:
+        xy, yaw = np.minimum(np.maximum(self._squares / self._count, _MIN_SHARE), 1.0)
         floor = _FLOOR**2
-        return (self.nominal_variance(motion) - floor) * [xy, xy, yaw] + floor
+        return (nominal - floor) * [xy, xy, yaw] + floor
 
     def nominal_variance(self, motion: Pose2) -> np.ndarray:
         """Compute the variances (3,) of a motion according to the settings [m^2, m^2, rad^2].
@@ -78,9 +81,10 @@ class OdometryErrorModel:
             matched: The same pose from a reliable scan match.
         """
         residual = (self.corrected(motion).inverse() @ matched).as_array()
-        variance, nominal = self.variance(motion), self.nominal_variance(motion)
+        nominal = self.nominal_variance(motion)
         if (residual**2 > _SLIP_SIGMAS**2 * nominal).any():
             return
+        variance = self._learned_variance(nominal)
         regressors = np.array([motion.x, motion.yaw])
         self._yaw_information += np.outer(regressors, regressors) / variance[2]
         self._yaw_sum += regressors * wrap(matched.yaw - motion.yaw) / variance[2]
