@@ -203,16 +203,26 @@ def main():
             if number % 50 == 0:
                 print(f"{number} homes", file=sys.stderr, flush=True)
     figures = summary(cases)
-    print(f"{len({case['home'] for case in cases})} homes, {len(cases)} searches, "
-          f"sigma {options.sigma:g}, uniform {options.uniform:g}")
-    print("| order | SPL | found | path, m | looks | SPL of search / SPL of order |\n| --- " * 1 + "| --- " * 5 + "|")
+    print(
+        f"{len({case['home'] for case in cases})} homes, {len(cases)} searches, "
+        f"sigma {options.sigma:g}, uniform {options.uniform:g}"
+    )
+    print(
+        "| order | SPL | found | path, m | looks | SPL of search / SPL of order |\n| --- " * 1
+        + "| --- " * 5
+        + "|"
+    )
     for name, row in figures.items():
         low, high = row["ratio_95"]
         ratio = "1" if name == "search" else f"{row['ratio']:.3f} [{low:.3f}, {high:.3f}]"
-        print(f"| {name} | {row['spl']:.4f} | {100.0 * row['success']:.1f} % | {row['path']:.1f} "
-              f"| {row['looks']:.1f} | {ratio} |")
+        print(
+            f"| {name} | {row['spl']:.4f} | {100.0 * row['success']:.1f} % | {row['path']:.1f} "
+            f"| {row['looks']:.1f} | {ratio} |"
+        )
     prepare = [case["seconds_to_prepare"] for case in cases]
-    print(f"views of a home: {np.median(prepare):.2f} s in the median, at most {max(prepare):.2f} s of CPU time")
+    print(
+        f"views of a home: {np.median(prepare):.2f} s in the median, at most {max(prepare):.2f} s of CPU time"
+    )
     if options.json:
         options.json.write_text(json.dumps({"figures": figures, "cases": cases}, indent=1), encoding="utf-8")
     return int(figures["nearest"]["ratio_95"][0] < options.required)

@@ -69,7 +69,9 @@ def furnished_home(seed: int) -> FurnishedHome:
                 name = f"{piece} {len(tops)} in {kind} {number}"
                 pose = Pose2(placed.middle[0] - start[0], placed.middle[1] - start[1])
                 size = (placed.width, placed.depth)
-                tops[name] = FurnitureTop(name, piece, f"{kind} {number}", pose, size, SURFACES[piece] * height)
+                tops[name] = FurnitureTop(
+                    name, piece, f"{kind} {number}", pose, size, SURFACES[piece] * height
+                )
     bodies = [
         wall(f"solid_{number}", each.middle[0] - start[0], each.middle[1] - start[1], each.width, each.depth)
         for number, each in enumerate([*floor.solids, *furniture.pieces])
@@ -93,7 +95,9 @@ def _place(kind: str, room: Rectangle, furniture: Furniture, rng: np.random.Gene
         if rng.random() < AT_WALL:
             # The longer side is along the wall.
             shares[int(width > depth)] = rng.integers(2)
-        piece = Rectangle(room.x + gap + shares[0] * free[0], room.y + gap + shares[1] * free[1], width, depth)
+        piece = Rectangle(
+            room.x + gap + shares[0] * free[0], room.y + gap + shares[1] * free[1], width, depth
+        )
         if furniture.place(piece):
             return piece
     return None

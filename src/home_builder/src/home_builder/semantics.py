@@ -3,7 +3,7 @@
 import math
 import random
 import re
-from typing import Any, Dict, List, Mapping, Tuple
+from typing import Any, Dict, Mapping, Tuple
 
 import shapely
 import yaml
@@ -26,6 +26,8 @@ SURFACES = {
     "box": 1.0,
     OUTLINE: 1.0,
 }
+# Names of kinds, where they are others.
+LABELS = {"kitchen": "kitchen unit", OUTLINE: "furniture"}
 # Kind of a room by what its name contains; other names are kinds of their own, "room 1" is a "room".
 ROOM_KINDS = {
     "kitchen": "kitchen",
@@ -41,7 +43,10 @@ ROOM_KINDS = {
 # What is usually where: weights of kinds of furniture, factors of kinds of rooms.
 PRIORS: Dict[str, Tuple[Mapping[str, float], Mapping[str, float]]] = {
     "apple": ({"kitchen": 5, "table": 4, "shelf": 0.5}, {"kitchen": 3, "dining room": 2}),
-    "book": ({"shelf": 5, "table": 2, "bed": 1.5, "sofa": 1.5}, {"living room": 2, "bedroom": 2, "office": 2}),
+    "book": (
+        {"shelf": 5, "table": 2, "bed": 1.5, "sofa": 1.5},
+        {"living room": 2, "bedroom": 2, "office": 2},
+    ),
     "bottle": ({"kitchen": 4, "table": 4, "box": 0.5}, {"kitchen": 3, "dining room": 2}),
     "cup": ({"kitchen": 4, "table": 4, "shelf": 0.5}, {"kitchen": 3, "dining room": 2, "office": 1.5}),
     "glasses": ({"table": 3, "bed": 2, "shelf": 2, "sofa": 1}, {"bedroom": 2, "bathroom": 1.5}),
@@ -98,7 +103,7 @@ def _rectangle(piece: FurniturePiece, start: Tuple[float, float]) -> Tuple[Pose2
 def _free_name(piece: FurniturePiece, room: str, taken: Mapping[str, Any]) -> str:
     """Return ``table in kitchen``, or ``table 2 in kitchen``; a piece that has a name keeps it."""
     where = f" in {room}" if room else ""
-    kind = "furniture" if piece.kind == OUTLINE else piece.kind
+    kind = LABELS.get(piece.kind, piece.kind)
     names = [piece.name] if piece.name else []
     numbers = ("", *(f" {number}" for number in range(2, len(taken) + 3)))
     names += [f"{piece.name or kind}{number}{where}" for number in numbers]
@@ -118,7 +123,8 @@ def semantic_map_text(semantic_map: SemanticMap) -> str:
         "# docs/how_to/find_objects.md. Objects: weights of kinds of furniture, factors of kinds of rooms.\n"
     )
     return head + "".join(
-        _section(key, table) for key, table in (("rooms", rooms), ("furniture", furniture), ("objects", objects))
+        _section(key, table)
+        for key, table in (("rooms", rooms), ("furniture", furniture), ("objects", objects))
     )
 
 
@@ -126,19 +132,28 @@ def _top_entry(top: FurnitureTop) -> Dict[str, Any]:
     room = {"room": top.room} if top.room else {}
     x, y, yaw = (round(each, DIGITS) + 0.0 for each in (top.pose.x, top.pose.y, top.pose.yaw))
     size = [round(each, DIGITS) for each in top.size]
-    return {"kind": top.kind, **room, "x": x, "y": y, "yaw": yaw, "size": size, "height": round(top.height, DIGITS)}
+    return {
+        "kind": top.kind,
+        **room,
+        "x": x,
+        "y": y,
+        "yaw": yaw,
+        "size": size,
+        "height": round(top.height, DIGITS),
+    }
 
 
 def _section(key: str, table: Mapping[str, Any]) -> str:
-    if not table:
-        return f"{key}: {{}}\n"
-    lines: List[str] = [f"{key}:\n"]
-    for name, entry in table.items():
-        text = yaml.safe_dump(
-            {name: entry}, sort_keys=False, default_flow_style=None, width=math.inf, allow_unicode=True
-        )
-        lines += [f"  {line}\n" for line in text.splitlines()]
-    return "".join(lines)
+    """Return a table with a line for each entry."""
+    lines = [f"  {_flow({name: entry})[1:-1]}\n" for name, entry in table.items()]
+    return "".join([f"{key}:\n", *lines]) if lines else f"{key}: {{}}\n"
+
+
+def _flow(entry: Mapping[str, Any]) -> str:
+    text = yaml.safe_dump(
+        entry, sort_keys=False, default_flow_style=True, width=math.inf, allow_unicode=True
+    ).strip()
+    return str(text).replace("'on':", "on:")  # which YAML 1.1 reads as true, and our reader as a text
 
 
 def objects_text(semantic_map: SemanticMap, name: str) -> str:
@@ -157,5 +172,5 @@ def objects_text(semantic_map: SemanticMap, name: str) -> str:
     for each in semantic_map.objects if semantic_map.furniture else ():
         probabilities = semantic_map.probabilities(each)
         (on,) = rng.choices(list(probabilities), list(probabilities.values()))
-        lines.append(yaml.safe_dump({each: {"on": on}}, default_flow_style=None, allow_unicode=True))
+        lines.append(f"{_flow({each: {'on': on}})[1:-1]}\n")
     return head + ("".join(lines) or "{}\n")

@@ -52,6 +52,13 @@ class ObjectFound:
     seen_at: Tuple[float, float]
     place: NamedPlace
 
+    @property
+    def where(self) -> str:
+        """Where it is, for people."""
+        x, y = self.seen_at
+        on = f"on {self.furniture}, " if self.furniture else ""
+        return f"{on}at ({x:.2f}, {y:.2f})"
+
 
 @dataclass(frozen=True)
 class ObjectNotFound:
@@ -131,14 +138,18 @@ class SearchExecution:
         pose = area.pose_near(*look.seen_at, look.base_in_map)
         if pose is None:
             where = f" on {furniture}" if furniture else ""
-            return ObjectNotFound(f"{name} was seen{where}, but the robot cannot come within {REACH:g} m of it")
+            return ObjectNotFound(
+                f"{name} was seen{where}, but the robot cannot come within {REACH:g} m of it"
+            )
         return ObjectFound(furniture, look.seen_at, NamedPlace(name, pose))
 
     def _reason(self) -> str:
         search = self._search
         seen, unseen = search.names_looked_at()
         if not seen:
-            return f"{search.object_name} was not found: the robot cannot reach a place that shows any furniture"
+            return (
+                f"{search.object_name} was not found: the robot cannot reach a place that shows any furniture"
+            )
         looks = "1 look" if search.looks == 1 else f"{search.looks} looks"
         text = f"{search.object_name} was not found in {looks} at {', '.join(seen)}"
         return f"{text}; not seen: {', '.join(unseen)}" if unseen else text

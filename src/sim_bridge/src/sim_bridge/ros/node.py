@@ -12,6 +12,7 @@ from visualization_msgs.msg import Marker
 from planar import PlanarError, Pose2
 from planar.config.settings import check
 from planar.geometry.pose import pose_of_text
+from planar.maps.semantic_map import load_objects
 from planar_ros.lockstep import transport
 from planar_ros.lockstep.transport import LockstepConnection
 from planar_ros.messages.conversion import pose2_from_msg, time_of
@@ -24,6 +25,7 @@ from sim_bridge.docks import with_dock
 from sim_bridge.errors import WorldError
 from sim_bridge.geometry.pose3 import to_pose2
 from sim_bridge.noise import noise_named
+from sim_bridge.objects import with_object_detector
 from sim_bridge.pacing import Pacer
 from sim_bridge.robots import robot_named
 from sim_bridge.ros.call_queue import CallQueue
@@ -69,7 +71,11 @@ class Bridge:
         world = world_of(settings)
         if settings.dock:
             world = with_dock(world, pose_of_text(settings.dock, "~dock"))
-        robots = _robots_of(world, robot)
+        objects = load_objects(settings.objects_file) if settings.objects_file else ()
+        robots = [
+            (name, with_object_detector(profile, objects), *start)
+            for name, profile, *start in _robots_of(world, robot)
+        ]
         profiles = (profile for _, profile, *_ in robots)
         warnings = [*world.warnings, *chain(*(each.warnings for each in profiles))]
         report_without_effect([], warnings, settings.strict, WorldError, "strict")
