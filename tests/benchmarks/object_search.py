@@ -36,7 +36,6 @@ from pick_objects.search import ObjectSearch, SearchArea
 from pick_objects.search.object_search import SEEN
 from planar import Pose2
 from planar.detection import DetectionModel
-from planar.geometry.grid_paths import GridPaths
 
 MODEL, START = DetectionModel(), Pose2()
 MAX_LOOKS, MIN_SHORTEST, DRAWS, RESAMPLES = 400, 1.0, 20, 4000
@@ -75,16 +74,20 @@ class Orders:
 
 
 def is_hidden(x, y, points_xy, solids):
-    """Return whether walls or tall furniture hide (x, y) from each point (N, 2): slabs of rectangles."""
+    """Return whether walls or tall furniture hide (x, y) from each point (N, 2): slabs of rectangles.
+
+    Shelves are open: a piece hides nothing of what stands in it.
+    """
+    holds = ((solids[:, :2] <= (x, y)) & (solids[:, 2:] >= (x, y))).all(axis=1)
+    solids = solids[~holds]
     directions = np.array([x, y]) - points_xy
-    lengths = np.hypot(*directions.T)
     with np.errstate(divide="ignore", invalid="ignore"):
         low = (solids[None, :, :2] - points_xy[:, None]) / directions[:, None]
         high = (solids[None, :, 2:] - points_xy[:, None]) / directions[:, None]
     enter, leave = np.fmin(low, high).max(axis=2), np.fmax(low, high).min(axis=2)
     hits = (enter <= leave) & (leave > 0.0)
-    first = np.where(hits, np.maximum(enter, 0.0), np.inf).min(axis=1, initial=np.inf)
-    return first * lengths < lengths - MODEL.depth
+    first = np.where(hits, enter, np.inf).min(axis=1, initial=np.inf)
+    return first < 1.0
 
 
 def true_probability(view, at, solids):
@@ -133,7 +136,7 @@ def run_home(options, seed):
     area = SearchArea(home.grid, home.semantic_map, MODEL)
     area.seconds_between_views()
     prepared = time.process_time() - begin
-    paths = GridPaths(home.grid)
+    paths = area.paths
     lengths = paths.lengths_from(paths.node_at(START.x, START.y))
     rng, cases = np.random.default_rng([seed, 78]), []
     for number in range(options.objects):

@@ -37,6 +37,7 @@ class SearchArea:
         tops: Furniture tops in their order.
         points_xy: Points (N, 2) of all tops in the map [m].
         top_of_point: Index of the top of each point (N,).
+        paths: Paths on the map.
         views: Standing poses in the map from which tops are seen.
         detection: Probability (V, N) that an object at each point is detected by a look from each view.
 
@@ -54,18 +55,18 @@ class SearchArea:
         points = [top.points_xy() for top in self.tops]
         self.points_xy = np.concatenate(points)
         self.top_of_point = np.repeat(np.arange(len(points)), [len(each) for each in points])
-        self._paths = GridPaths(grid)
+        self.paths = GridPaths(grid)
         clearance = distance_field(grid.cells != FREE, grid.resolution)
         cells = np.argwhere(clearance > STANDING_CLEARANCE)
         self._standing_xy = grid.points_of(cells) if len(cells) else np.empty((0, 2))
         self.views, self.detection = self._choose_views(grid, cells, model)
-        self._nodes = [self._paths.node_at(view.x, view.y) for view in self.views]
+        self._nodes = [self.paths.node_at(view.x, view.y) for view in self.views]
         self._seconds: Optional[np.ndarray] = None
 
     def seconds_between_views(self) -> np.ndarray:
-        """Return the time to drive from each view to each, and to look [s], (V, V); infinite without a path."""
+        """Return the time to drive from each view to each, and to look, (V, V) [s]."""
         if self._seconds is None:
-            rows = [self._paths.lengths_from(node)[self._nodes] for node in self._nodes]
+            rows = [self.paths.lengths_from(node)[self._nodes] for node in self._nodes]
             self._seconds = STOP_SECONDS + np.array(rows).reshape(len(rows), len(rows)) / SPEED
         return self._seconds
 
@@ -87,12 +88,12 @@ class SearchArea:
             if distances[index] > REACH:
                 return None
             at = self._standing_xy[index].tolist()
-            if np.isfinite(lengths[self._paths.node_at(*at)]):
+            if np.isfinite(lengths[self.paths.node_at(*at)]):
                 return Pose2(*at, math.atan2(y - at[1], x - at[0]))
         return None
 
     def _lengths_from(self, pose: Pose2) -> np.ndarray:
-        return self._paths.lengths_from(self._paths.node_at(pose.x, pose.y))
+        return self.paths.lengths_from(self.paths.node_at(pose.x, pose.y))
 
     def _choose_views(
         self, grid: OccupancyGrid, cells: np.ndarray, model: DetectionModel

@@ -14,7 +14,7 @@ from planar import Pose2
 # Number of looks that are planned ahead, and of sequences that are kept at each.
 DEPTH, BEAM = 8, 24
 # Time by which what is not found within the planned looks is charged [s].
-TAIL_SECONDS = 60.0
+TAIL_SECONDS = 30.0
 # Share of what can be seen that was seen when the search ends, by the prior and on each point alike: the
 # probability of detection, had the object been there.
 COVERAGE, EVEN_COVERAGE = 0.95, 0.9

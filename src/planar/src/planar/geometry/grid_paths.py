@@ -30,7 +30,8 @@ class GridPaths:
         distances = distance_field(grid.cells == OCCUPIED, grid.resolution)
         is_open = (distances > clearance) & (grid.cells != OCCUPIED)
         self.is_open, self._grid = is_open[:: self._step, :: self._step], grid
-        self._graph = grid_graph(self.is_open, grid.resolution * self._step)
+        graph = grid_graph(self.is_open, grid.resolution * self._step)
+        self._graph = graph + graph.T
         self._open_cells = np.argwhere(self.is_open)
         self._cached = lru_cache(MAX_CACHED)(self._dijkstra)
 
@@ -57,4 +58,4 @@ class GridPaths:
     def _dijkstra(self, node: int) -> np.ndarray:
         from scipy.sparse.csgraph import dijkstra  # late: few users need it
 
-        return np.asarray(dijkstra(self._graph, directed=False, indices=node))
+        return np.asarray(dijkstra(self._graph, indices=node))
