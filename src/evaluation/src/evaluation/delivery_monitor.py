@@ -1,6 +1,5 @@
 """Track the deliveries of a mission and measure the true position error at each pick-up and set-down."""
 
-import math
 from typing import Callable, Dict, List, Mapping, NamedTuple, Optional, Tuple
 
 from evaluation.verdict import ARRIVAL_TOLERANCE, TRUE_PLACE, DeliveryRecord
@@ -80,10 +79,16 @@ class DeliveryMonitor:
 
     def _error_of_finding(self, name: str, object_at: Optional[Tuple[float, float]]) -> Optional[float]:
         """Return the distance from where an object is reported to where it truly is [m]."""
-        place = self._places.get(TRUE_PLACE.format(name))
+        place = self._places.get(self._true_place(name))
         if place is None or object_at is None:
             return None
-        return math.dist(object_at, (place.pose.x, place.pose.y))
+        return place.distance_to(Pose2(*object_at))
+
+    def _true_place(self, name: str) -> str:
+        """Return the name of the place where an object truly is: where it was set down last, if it was."""
+        moves = (each for each in reversed(self._records) if each.object == name and each.destination)
+        delivered = (each.destination for each in moves if each.state == _stage_name(SET_DOWN.done))
+        return next(delivered, TRUE_PLACE.format(name))
 
     def _error(
         self,
@@ -108,7 +113,7 @@ class DeliveryMonitor:
             return known
         is_found = action is PICK_UP and not delivery.source
         name = delivery.source if action is PICK_UP else delivery.destination
-        name = TRUE_PLACE.format(delivery.object_name) if is_found else name
+        name = self._true_place(delivery.object_name) if is_found else name
         if truth is None or name not in self._places:
             return None
         error = max(self._places[name].distance_to(truth) - (REACH if is_found else 0.0), 0.0)

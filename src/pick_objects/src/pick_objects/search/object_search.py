@@ -59,6 +59,8 @@ class ObjectSearch:
         seconds = self.area.seconds_to_views(base_in_map)
         is_possible = self._is_allowed & np.isfinite(seconds)
         can_see = self.area.detection[is_possible].max(axis=0, initial=0.0) > 0.0
+        if not can_see.any():
+            return None
         missed = self.mass[can_see] / self._prior[can_see]
         is_covered = self.mass[can_see].sum() <= (1.0 - COVERAGE) * self._prior[can_see].sum()
         if is_covered and missed.mean() <= 1.0 - EVEN_COVERAGE:
