@@ -4,21 +4,21 @@
 python3 tests/benchmarks/object_search.py [--homes 1000] [--objects 3] [--sigma 0.7] [--uniform 0.15]
 
 A home of 40 to 250 m2 is generated for each seed, and objects are placed in it. Where an object truly is, is
-drawn from a distribution that the searcher does not have: each weight of the prior, of furniture and of rooms,
-is multiplied by exp(normal(0, SIGMA)), anew for each home and object, and with the probability UNIFORM the object
-is on any piece of furniture; on the piece its position is uniform. A look detects it by the declared sensor model
-(planar.detection), judged by the true geometry of walls and tall furniture. All searchers have the same views,
-sensor and chance, and end by the same rule; they differ in the order:
+drawn from a distribution that the searcher does not have: each weight of the prior, of furniture and rooms,
+is multiplied by exp(normal(0, SIGMA)), anew for each home and object, and with the probability UNIFORM the
+object is on any piece of furniture; on the piece its position is uniform. A look detects it by the declared
+sensor model (planar.detection), judged by the true geometry of walls and tall furniture. All searchers have
+the same views, sensor and chance, and end by the same rule; they differ in the order:
 
   search        pick_objects.search: posterior and beam search
   nearest       visits each piece of furniture, always the nearest that is left, in rounds
   nearest, new  the same without pieces of which a look has shown something in this round
   likeliest     visits the pieces in the order of the posterior
 
-SPL (Anderson et al., "On evaluation of embodied navigation agents", 2018) is the mean of success * L / max(P, L):
-P is the path driven, L the shortest path to where the object can be detected with at least half of the best
-probability. Objects that are seen within 1 m of the start are drawn again. Ratios have 95 % intervals of a
-bootstrap over homes. Exit code: 0 if the lower end of the ratio to ``nearest`` is at least --required.
+SPL (Anderson et al., "On evaluation of embodied navigation agents", 2018) is the mean of success * L / max(P,
+L): P is the path driven, L the shortest path to where the object can be detected with at least half of the
+best probability. Objects that are seen within 1 m of the start are drawn again. Ratios have 95 % intervals of
+a bootstrap over homes. Exit code: 0 if the lower end of the ratio to ``nearest`` is at least --required.
 """
 
 import argparse
@@ -34,10 +34,12 @@ from helpers.furnished_homes import draw_placement, furnished_home
 
 from pick_objects.search import ObjectSearch, SearchArea
 from pick_objects.search.object_search import SEEN
-from planar import Pose2
+from planar import Pose2, write_atomically
 from planar.detection import DetectionModel
 
 MODEL, START = DetectionModel(), Pose2()
+# Homes between two reports of progress.
+REPORTED_HOMES = 25
 MAX_LOOKS, MIN_SHORTEST, DRAWS, RESAMPLES = 400, 1.0, 20, 4000
 SEARCHERS = ("search", "nearest", "nearest, new", "likeliest")
 
@@ -186,6 +188,23 @@ def summary(cases):
     return figures
 
 
+def print_table(figures, cases, options):
+    """Print the figures."""
+    homes = len({case["home"] for case in cases})
+    print(f"{homes} homes, {len(cases)} searches, sigma {options.sigma:g}, uniform {options.uniform:g}")
+    print("| order | SPL | found | path, m | looks | SPL of search / SPL of order |")
+    print("| --- | --- | --- | --- | --- | --- |")
+    for name, row in figures.items():
+        low, high = row["ratio_95"]
+        ratio = "1" if name == "search" else f"{row['ratio']:.3f} [{low:.3f}, {high:.3f}]"
+        found = f"{100.0 * row['success']:.1f} %"
+        print(f"| {name} | {row['spl']:.4f} | {found} | {row['path']:.1f} | {row['looks']:.1f} | {ratio} |")
+    seconds = [case["seconds_to_prepare"] for case in cases]
+    print(
+        f"views of a home: {np.median(seconds):.2f} s of CPU time in the median, at most {max(seconds):.2f} s"
+    )
+
+
 def main():
     """Run the searches."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
@@ -196,38 +215,21 @@ def main():
     parser.add_argument("--uniform", type=float, default=0.15)
     parser.add_argument("--required", type=float, default=1.3, help="least ratio of SPL to nearest")
     parser.add_argument("--jobs", type=int, default=1)
-    parser.add_argument("--json", type=Path, help="also write figures and cases to this file")
+    parser.add_argument("--json", type=Path, help="also write figures and cases to this file, as they come")
     options = parser.parse_args()
     seeds = range(options.first_seed, options.first_seed + options.homes)
-    cases = []
+    cases, figures = [], {}
     with multiprocessing.get_context("spawn").Pool(options.jobs) as pool:
         for number, some in enumerate(pool.imap(partial(run_home, options), seeds), 1):
             cases += some
-            if number % 50 == 0:
+            if number % REPORTED_HOMES == 0 or number == options.homes:
                 print(f"{number} homes", file=sys.stderr, flush=True)
-    figures = summary(cases)
-    print(
-        f"{len({case['home'] for case in cases})} homes, {len(cases)} searches, "
-        f"sigma {options.sigma:g}, uniform {options.uniform:g}"
-    )
-    print(
-        "| order | SPL | found | path, m | looks | SPL of search / SPL of order |\n| --- " * 1
-        + "| --- " * 5
-        + "|"
-    )
-    for name, row in figures.items():
-        low, high = row["ratio_95"]
-        ratio = "1" if name == "search" else f"{row['ratio']:.3f} [{low:.3f}, {high:.3f}]"
-        print(
-            f"| {name} | {row['spl']:.4f} | {100.0 * row['success']:.1f} % | {row['path']:.1f} "
-            f"| {row['looks']:.1f} | {ratio} |"
-        )
-    prepare = [case["seconds_to_prepare"] for case in cases]
-    print(
-        f"views of a home: {np.median(prepare):.2f} s in the median, at most {max(prepare):.2f} s of CPU time"
-    )
-    if options.json:
-        options.json.write_text(json.dumps({"figures": figures, "cases": cases}, indent=1), encoding="utf-8")
+                figures = summary(cases)
+                if options.json:
+                    write_atomically(
+                        options.json, json.dumps({"figures": figures, "cases": cases}).encode("utf-8")
+                    )
+    print_table(figures, cases, options)
     return int(figures["nearest"]["ratio_95"][0] < options.required)
 
 

@@ -14,8 +14,8 @@ from home_builder.semantics import semantic_map_of
 from pick_objects import load_mission
 from planar import FREE, OCCUPIED, SettingsError, load_map
 from planar.maps.home_folder import load_home
-from planar.maps.semantic_map import load_objects, load_semantic_map
 from planar.maps.places import load_pickup_and_dropoff, load_places, unreachable_reason
+from planar.maps.semantic_map import load_objects, load_semantic_map
 from sim_bridge import load_world
 
 WALLS = (

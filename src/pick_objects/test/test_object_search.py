@@ -156,7 +156,10 @@ def test_searches_are_written_in_mission_files():
 @pytest.mark.parametrize(
     ("entry", "message"),
     [
-        ("{find: cupp}", 'find cannot be searched: semantic_map.yaml: objects do not list cupp (did you mean "cup"?)'),
+        (
+            "{find: cupp}",
+            'find cannot be searched: semantic_map.yaml: objects do not list cupp (did you mean "cup"?)',
+        ),
         ("{find: cup, to: desk}", 'unknown key "deliveries[1].to"'),
         ("{object: cup, to: dusk}", 'to names no place: dusk (did you mean "desk"?)'),
         ("{object: cup}", "to is missing"),

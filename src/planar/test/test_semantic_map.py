@@ -86,9 +86,7 @@ def test_what_cannot_be_searched_is_said_in_a_sentence(tmp_path):
 def test_objects_stand_on_furniture_in_shelves_or_anywhere(tmp_path):
     load(tmp_path, GOOD)
     path = tmp_path / "objects.yaml"
-    path.write_text(
-        "cup: {on: counter}\nbook: {on: cupboard}\nkey: {x: 1, y: 2, z: 0.1}\n", encoding="utf-8"
-    )
+    path.write_text("cup: {on: counter}\nbook: {on: cupboard}\nkey: {x: 1, y: 2, z: 0.1}\n", encoding="utf-8")
     cup, book, key = load_objects(path)
     assert (cup.x, cup.y, cup.z) == (1.0, 2.0, 0.9)
     assert book.z == 1.0

@@ -119,8 +119,8 @@ def semantic_map_text(semantic_map: SemanticMap) -> str:
     }
     furniture = {top.name: _top_entry(top) for top in semantic_map.furniture.values()}
     head = (
-        "# Rooms, furniture, and what is usually where, in the map frame: metres, radians. Edit it as you like:\n"
-        "# docs/how_to/find_objects.md. Objects: weights of kinds of furniture, factors of kinds of rooms.\n"
+        "# Rooms, furniture, what is usually where; map frame, metres, radians. Edit it as you like.\n"
+        "# Objects: weights of kinds of furniture, factors of kinds of rooms (docs/how_to/find_objects.md).\n"
     )
     return head + "".join(
         _section(key, table)
@@ -165,7 +165,7 @@ def objects_text(semantic_map: SemanticMap, name: str) -> str:
     """
     rng = random.Random(name)
     head = (
-        "# Where objects truly are, for the simulated sensor and the judge; the robot does not read this file.\n"
+        "# Where objects truly are, for the simulated detector and the judge; the robot does not read it.\n"
         "# NAME: {on: FURNITURE} or NAME: {x: X, y: Y, z: HEIGHT}, in the map frame.\n"
     )
     lines = []

@@ -48,7 +48,7 @@ class NodeSettings:
     )
     semantic_map_file: str = parameter(
         "",
-        "YAML of what is usually where, by which objects are searched (docs/how_to/find_objects.md); or empty",
+        "YAML of what is usually where, to search objects by (docs/how_to/find_objects.md); or empty",
     )
     serve: bool = parameter(False, "wait for missions sent to the action deliver, until shutdown")
     wait_for: str = parameter(

@@ -103,8 +103,8 @@ class Mission:
                 continue
             if semantic_map is None:
                 raise MissionError(
-                    f"{delivery}: it has to be searched, and there is no semantic map; say from where, or take a "
-                    "home of build_home.sh (--home FOLDER)"
+                    f"{delivery}: it has to be searched, and there is no semantic map; say from where, or "
+                    "take a home of build_home.sh (--home FOLDER)"
                 )
             problem = semantic_map.problem_with(delivery.object_name)
             if problem:

@@ -53,7 +53,7 @@ class NodeSettings:
     mission_file: str = parameter("", "YAML file of a mission whose deliveries are requested once; or empty")
     semantic_map_file: str = parameter(
         "",
-        "YAML of what is usually where, by which objects are searched (docs/how_to/find_objects.md); or empty",
+        "YAML of what is usually where, to search objects by (docs/how_to/find_objects.md); or empty",
     )
     state_folder: str = parameter(
         "", "folder of the journal and of service.json", required="the path of a folder"

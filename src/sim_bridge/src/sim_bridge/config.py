@@ -64,7 +64,7 @@ class BridgeSettings(RunTimeSettings):
     dock: str = parameter("", "pose of a dock in the world: x y yaw [m, rad]; empty: none but the world's")
     objects_file: str = parameter(
         "",
-        "YAML file of where objects are, for a detector on the robot (docs/how_to/find_objects.md); empty: none",
+        "YAML file of where objects are, for a detector (docs/how_to/find_objects.md); empty: none",
     )
     seed: int = parameter(0, "seed of all noise", bounds=NOT_NEGATIVE)
     wait_for: str = parameter(

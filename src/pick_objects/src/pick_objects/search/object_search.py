@@ -1,7 +1,7 @@
 """Search for one object: the posterior over furniture tops, and the order of looks.
 
-The optimal searcher path problem (Trummel and Weisinger, "The complexity of the optimal searcher path problem",
-1986) with detection probabilities below 1, solved by beam search over the next looks and again after each.
+The optimal searcher path problem (Trummel and Weisinger, "The complexity of the optimal searcher path
+problem", 1986) with detection probabilities below 1, solved by beam search, again after each look.
 """
 
 from typing import Dict, List, Optional, Tuple

@@ -16,7 +16,7 @@ from planar.config.yaml_table import Table, read_table
 from planar.errors import SettingsError
 from planar.geometry.pose import Pose2
 
-# Probability that an object is on any piece of furniture, whatever the prior: objects are where nobody expects.
+# Probability that an object is on any piece of furniture, whatever the prior says.
 UNEXPECTED = 0.1
 # Distance between points of a furniture top [m].
 POINT_SPACING = 0.35
@@ -169,7 +169,7 @@ def _furniture(table: Table, rooms) -> Dict[str, FurnitureTop]:
         if room and room not in rooms:
             raise entry.error_at("room", f"names no room: {room}{hint_or_choices(room, rooms)}")
         width, depth = entry.numbers("size", "width, depth")
-        entry.check(0.0 < min(width, depth) and max(width, depth) <= 100.0, "size", "from 0 to 100 m")
+        entry.check(min(width, depth) > 0.0 and max(width, depth) <= 100.0, "size", "from 0 to 100 m")
         height = entry.number("height")
         entry.check(0.0 <= height <= 10.0, "height", "from 0 to 10 m")
         pose = Pose2(entry.number("x"), entry.number("y"), entry.number("yaw", 0.0))

@@ -45,8 +45,8 @@ class Knowledge:
         if self.semantic_map is not None:
             return self.semantic_map.problem_with(object_name)
         return (
-            f"it is not known where {object_name} is, and there is no semantic map to search it by; use deliver "
-            f"{object_name} from PLACE to PLACE, or start the service with --home FOLDER"
+            f"it is not known where {object_name} is, and there is no semantic map to search it by; use "
+            f"deliver {object_name} from PLACE to PLACE, or start the service with --home FOLDER"
         )
 
 

@@ -1,4 +1,4 @@
-"""A detector of objects: reports those that its camera sees, as its declared model says (planar.detection)."""
+"""A detector of objects: reports those that its camera sees, by its declared model (planar.detection)."""
 
 from dataclasses import dataclass
 from typing import Tuple
