@@ -376,15 +376,13 @@ _URDF = _files(*(f"src/sim_bridge/src/sim_bridge/urdf/{name}.urdf" for name in (
 _FAULTS = (
     "faults:\n  - {kind: scan_late, start: 8, end: 12.5, strength: 0.5, seed: 3}\n  - {kind: kidnapped}\n"
 )
-_SEMANTIC_MAPS = [
-    """\
+_SEMANTIC_MAP = """\
 rooms: {kitchen: {kind: kitchen}}
 furniture:
   counter: {kind: kitchen, room: kitchen, x: 1.0, y: 2.0, yaw: 0.1, size: [2.0, 0.6], height: 0.9}
 objects: {cup: {on: {kitchen: 3, table: 1}, in: {kitchen: 2}}}
 """
-]
-_OBJECTS = ["cup: {on: counter}\n", "keys: {x: 1.0, y: 2.0, z: 0.4}\n"]
+_OBJECTS = ["keys: {x: 1.0, y: 2.0, z: 0.4}\n"]
 _ZONES = "slow: {kind: speed, corners: [[0, 0], [1, 0], [1, 1]], max_speed: 0.2, enabled: false}\n"
 _INPUTS = "subscribers:\n  - {name: navi, topic: input/navi, timeout: 1.0, priority: 5}\npublisher: out\n"
 _ALL: Tuple[Reader, ...] = (
@@ -392,8 +390,8 @@ _ALL: Tuple[Reader, ...] = (
     Reader("map_image", "image.pgm", _map_image, _small_images),
     Reader("places", "places.yaml", _places, _files("map/zones.yaml")),
     Reader("mission", "mission.yaml", _mission, _MISSIONS),
-    Reader("semantic_map", "semantic_map.yaml", _semantic_map, _texts(_SEMANTIC_MAPS)),
-    Reader("objects", "objects.yaml", _objects, _texts(_OBJECTS)),
+    Reader("semantic_map", "semantic_map.yaml", _semantic_map, _texts(_SEMANTIC_MAP)),
+    Reader("objects", "objects.yaml", _objects, _texts(*_OBJECTS)),
     Reader("faults", "faults.yaml", _faults, _texts(_FAULTS)),
     Reader("zones", "keep_out.yaml", _zones, _texts(_ZONES)),
     Reader("inputs", "mux.yaml", _inputs, _texts(_INPUTS)),
