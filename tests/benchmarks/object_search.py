@@ -57,9 +57,10 @@ class Orders:
 
     def next(self, name, base):
         """Return the next view, None if the search has ended."""
-        best = self.search.next_view(base)  # also decides whether the search has ended
-        if best is None or name == "search":
-            return best
+        if name == "search":
+            return self.search.next_view(base)
+        if self.search.is_over(base):
+            return None
         seconds = self.area.seconds_to_views(base)[self.view_of_top]
         can = {top for top in range(len(seconds)) if self.is_seen[top] and np.isfinite(seconds[top])}
         self.left = (self.left & can) or can

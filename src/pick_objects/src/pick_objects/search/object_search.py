@@ -54,20 +54,25 @@ class ObjectSearch:
         Args:
             base_in_map: Where the robot is.
         """
-        if not len(self.area.views):
+        if self.is_over(base_in_map):
             return None
-        seconds = self.area.seconds_to_views(base_in_map)
+        area, seconds = self.area, self.area.seconds_to_views(base_in_map)
         is_possible = self._is_allowed & np.isfinite(seconds)
+        return _best_first(seconds, area.seconds_between_views(), area.detection, self.mass, is_possible)
+
+    def is_over(self, base_in_map: Pose2) -> bool:
+        """Return whether what can be seen was seen.
+
+        Args:
+            base_in_map: Where the robot is.
+        """
+        is_possible = self._is_allowed & np.isfinite(self.area.seconds_to_views(base_in_map))
         can_see = self.area.detection[is_possible].max(axis=0, initial=0.0) > 0.0
         if not can_see.any():
-            return None
-        missed = self.mass[can_see] / self._prior[can_see]
-        is_covered = self.mass[can_see].sum() <= (1.0 - COVERAGE) * self._prior[can_see].sum()
-        if is_covered and missed.mean() <= 1.0 - EVEN_COVERAGE:
-            return None
-        return _best_first(
-            seconds, self.area.seconds_between_views(), self.area.detection, self.mass, is_possible
-        )
+            return True
+        missed, prior = self.mass[can_see].sum(), self._prior[can_see].sum()
+        missed_on_average = (self.mass[can_see] / self._prior[can_see]).mean()
+        return bool(missed <= (1.0 - COVERAGE) * prior and missed_on_average <= 1.0 - EVEN_COVERAGE)
 
     def on_nothing_seen(self, view: int) -> None:
         """Update the posterior after a look that did not detect the object (Bayes' rule)."""
