@@ -5,7 +5,7 @@ python3 tests/benchmarks/object_search.py [--homes 1000] [--objects 3] [--sigma 
 
 A home of 40 to 250 m2 is generated for each seed, and objects are placed in it. Where an object truly is, is
 drawn from a distribution that the searcher does not have: each weight of the prior, of furniture and rooms,
-is multiplied by exp(normal(0, SIGMA)), anew for each home and object, and with the probability UNIFORM the
+is multiplied by exp(normal(0, SIGMA)), drawn for each home and object, and with the probability UNIFORM the
 object is on any piece of furniture; on the piece its position is uniform. A look detects it by the declared
 sensor model (planar.detection), judged by the true geometry of walls and tall furniture. All searchers have
 the same views, sensor and chance, and end by the same rule; they differ in the order:

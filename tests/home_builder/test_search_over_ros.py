@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Searches in a home that was built, over ROS: a mission that fetches, one in vain, and requests."""
+"""Searches in a home that was built, over ROS: a mission that fetches, one without success, and requests."""
 
 import shutil
 import subprocess

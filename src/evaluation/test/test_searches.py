@@ -1,4 +1,4 @@
-"""Judging of searches: by where objects truly are, not by where the robot believes them."""
+"""Judging of searches: by where objects truly are, not by what the robot reports."""
 
 import pytest
 

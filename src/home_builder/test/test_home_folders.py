@@ -166,7 +166,7 @@ def test_objects_are_on_furniture_that_can_hold_them(home):
     assert math.isclose(objects["cup"].z, 0.55 * 0.9)
 
 
-def test_a_home_without_furniture_has_a_semantic_map_that_says_so(tmp_path):
+def test_a_home_without_furniture_has_a_semantic_map_without_any(tmp_path):
     build_home(replace(PLAN, furniture=()), tmp_path / "bare")
     parts = load_home(tmp_path / "bare")
     assert "has no furniture" in load_semantic_map(parts.semantic_map).problem_with("cup")

@@ -77,7 +77,7 @@ def test_all_mistakes_are_reported_at_once(tmp_path):
     assert len(str(error.value).splitlines()) == 2
 
 
-def test_what_cannot_be_searched_is_said_in_a_sentence(tmp_path):
+def test_what_cannot_be_searched_is_stated_in_a_sentence(tmp_path):
     assert load(tmp_path, GOOD).problem_with("cup") == ""
     assert 'objects do not list cupp (did you mean "cup"?)' in load(tmp_path, GOOD).problem_with("cupp")
     assert "has no furniture" in load(tmp_path, "objects: {cup: {on: {table: 1}}}").problem_with("cup")

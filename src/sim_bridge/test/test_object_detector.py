@@ -8,7 +8,7 @@ from planar.detection import DetectionModel
 from planar.maps.semantic_map import PlacedObject
 from sim_bridge import ROBOTS, Simulation
 from sim_bridge.geometry.shapes import Plane
-from sim_bridge.objects import with_object_detector
+from sim_bridge.sensors.object_detector import with_object_detector
 from sim_bridge.simulation import box_on_floor
 from sim_bridge.world import Body, Collision, World
 
@@ -37,7 +37,7 @@ def share(found):
     return sum(map(bool, found)) / len(found)
 
 
-def test_an_object_in_view_is_detected_as_often_as_the_model_says_and_where_it_is():
+def test_an_object_in_view_is_detected_as_often_as_the_model_states_and_where_it_is():
     found = images(cup(1.5, 0.3))
     assert abs(share(found) - MODEL.probability) < 0.12  # 3 standard deviations of 60 images
     points = np.array([(each[0].x, each[0].y) for each in found if each])

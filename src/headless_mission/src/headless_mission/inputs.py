@@ -18,7 +18,7 @@ from planar.maps.places import NamedPlace, load_pickup_and_dropoff, load_places,
 from planar.maps.semantic_map import SemanticMap, load_objects, load_semantic_map
 from sim_bridge import RobotProfile, load_world, robot_named
 from sim_bridge.docks import with_dock
-from sim_bridge.objects import with_object_detector
+from sim_bridge.sensors.object_detector import with_object_detector
 from sim_bridge.world import World
 
 # Frames of the launch files of localization, SLAM and navigation (REP 105).

@@ -28,7 +28,7 @@ SURFACES = {
 }
 # Names of kinds, where they are others.
 LABELS = {"kitchen": "kitchen unit", OUTLINE: "furniture"}
-# Kind of a room by what its name contains; other names are kinds of their own, "room 1" is a "room".
+# Kind of a room by what its name contains; any other name is the kind, "room 1" is a "room".
 ROOM_KINDS = {
     "kitchen": "kitchen",
     "dining": "dining room",

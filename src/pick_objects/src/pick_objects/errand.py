@@ -49,8 +49,6 @@ class PathLengthsMeasured:
 
 Order = Union[DriveToPlace, LookForObject, MeasurePathLengths, FinishTask]
 Event = Union[GoalReached, GoalFailed, RobotDisplaced, PathLengthsMeasured, LookTaken]
-# Time that a search is estimated to take [s].
-SEARCH_SECONDS = 120.0
 
 
 class Errand:
@@ -204,25 +202,8 @@ class Errand:
         """Estimate the remaining time of the mission [s]."""
         if self._is_over:
             return 0.0
-        settings, places, where = self.mission.settings, self.mission.places, self.place
         left = self._driving_time.seconds_left(self._elapsed.update(now))
-        for job in self.jobs:
-            if job.stage in ENDED:
-                continue
-            source, destination = (
-                places.get(name) for name in (job.delivery.source, job.delivery.destination)
-            )
-            if source is None or destination is None:
-                left, where = left + SEARCH_SECONDS, destination or where
-                continue
-            if job.stage.value < DeliveryStage.PICKING_UP.value and where:
-                left += self._driving_time.seconds_between(where.pose, source.pose)
-            if job.stage.value < DeliveryStage.CARRYING.value:
-                left += settings.pickup_seconds
-                left += self._driving_time.seconds_between(source.pose, destination.pose)
-            left += settings.dropoff_seconds
-            where = destination
-        return left
+        return left + self._driving_time.seconds_for(self.jobs, self.mission, self.place)
 
     def _begin_next(self, now: float) -> Order:
         while True:

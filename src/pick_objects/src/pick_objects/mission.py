@@ -103,7 +103,7 @@ class Mission:
                 continue
             if semantic_map is None:
                 raise MissionError(
-                    f"{delivery}: it has to be searched, and there is no semantic map; say from where, or "
+                    f"{delivery}: it has to be searched, and there is no semantic map; add from: PLACE, or "
                     "take a home of build_home.sh (--home FOLDER)"
                 )
             problem = semantic_map.problem_with(delivery.object_name)

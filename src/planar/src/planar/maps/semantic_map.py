@@ -16,7 +16,7 @@ from planar.config.yaml_table import Table, read_table
 from planar.errors import SettingsError
 from planar.geometry.pose import Pose2
 
-# Probability that an object is on any piece of furniture, whatever the prior says.
+# Probability that an object is on any piece of furniture, whatever the prior is.
 UNEXPECTED = 0.1
 # Distance between points of a furniture top [m].
 POINT_SPACING = 0.35

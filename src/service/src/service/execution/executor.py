@@ -183,7 +183,7 @@ class TaskExecutor:
         if isinstance(step, FindObject) and self._is_located(step.object_name):
             self._complete_step(now)
             return self._begin_step(now, elapsed, may_return=False)
-        problem = self._problem_of(task, step)
+        problem = problem_of(task, step, self._book.objects, self._area)
         if problem:
             return self._on_failed(now, problem)
         self._is_returning = may_return and not isinstance(step, DRIVES)
@@ -206,7 +206,7 @@ class TaskExecutor:
         if isinstance(step, Drive):
             return Driving(self._places[step.place], settings)
         if isinstance(step, (FindObject, DriveToObject)) and not self._is_located(step.object_name):
-            assert self._area is not None  # see _problem_of
+            assert self._area is not None  # see problem_of
             search = ObjectSearch(self._area, step.object_name)
             return Searching(search, settings, lambda: self._robot.pose)
         if isinstance(step, DriveToObject):
@@ -226,30 +226,8 @@ class TaskExecutor:
         left = min(step.seconds, max(0.0, since + step.seconds - now))
         return Standing("waiting", left, is_interruptible=True)
 
-    def _problem_of(self, task: ServiceTask, step: Step) -> str:
-        """Return why a step cannot be done; empty if it can."""
-        description = task.request.description
-        name = task.request.object_name
-        if not name or task.is_carrying:
-            return ""
-        state = self._book.objects.get(name)
-        source = getattr(description, "source", None)
-        if state is None or not state.is_located:
-            return self._problem_with_search(step, name)
-        if state.carried_by and state.carried_by != task.id:
-            return f"{name} is on the robot for task {state.carried_by}"
-        if source is not None and state.place != source:
-            return f"{name} is not at {source}" + (f" but at {state.place}" if state.place else "")
-        return ""
-
     def _is_located(self, name: str) -> bool:
         return name in self._book.objects and self._book.objects[name].is_located
-
-    def _problem_with_search(self, step: Step, name: str) -> str:
-        """Return why an object whose place is not known cannot be searched in a step; empty if it can."""
-        if self._area is None or not isinstance(step, (FindObject, DriveToObject)):
-            return f"it is not known where {name} is"
-        return self._area.semantic_map.problem_with(name)
 
     def place_of(self, object_name: str) -> NamedPlace:
         """Return where to pick up an object: its place, or the pose at which the robot left it."""
@@ -288,6 +266,33 @@ class TaskExecutor:
         was_active = self.activity is not None
         self._stop_task()
         return StopRobot() if was_active else None
+
+
+def problem_of(
+    task: ServiceTask, step: Step, objects: Mapping[str, ObjectState], area: Optional[SearchArea]
+) -> str:
+    """Return why a step cannot be done, as a sentence; empty if it can.
+
+    Args:
+        task: Task of the step.
+        step: The step.
+        objects: Where objects are known to be.
+        area: Where objects can be searched; None if there is no semantic map.
+    """
+    name = task.request.object_name
+    if not name or task.is_carrying:
+        return ""
+    state = objects.get(name)
+    source = getattr(task.request.description, "source", None)
+    if state is None or not state.is_located:
+        if area is None or not isinstance(step, (FindObject, DriveToObject)):
+            return f"it is not known where {name} is"
+        return area.semantic_map.problem_with(name)
+    if state.carried_by and state.carried_by != task.id:
+        return f"{name} is on the robot for task {state.carried_by}"
+    if source is not None and state.place != source:
+        return f"{name} is not at {source}" + (f" but at {state.place}" if state.place else "")
+    return ""
 
 
 TEXTS: Dict[type, str] = {

@@ -2,7 +2,7 @@
 
 from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 
-from pick_objects.errand import SEARCH_SECONDS
+from pick_objects.driving_time import SEARCH_SECONDS
 from planar import Pose2
 from planar.maps.places import NamedPlace
 from service.config import ServiceSettings

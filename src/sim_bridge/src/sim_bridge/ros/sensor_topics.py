@@ -96,8 +96,8 @@ TOPICS: Dict[type, Callable[[Any, RobotPublishers], SensorTopics]] = {
     CameraProfile: CameraTopics,
     ImuProfile: one_topic(Imu, imu_to_msg, queue_size=100),
     KobukiProfile: KobukiTopics,
-    DockIrProfile: one_topic(DockInfraRed, dock_ir_to_msg),
     ObjectDetectorProfile: one_topic(DetectedObjects, detections_to_msg),
+    DockIrProfile: one_topic(DockInfraRed, dock_ir_to_msg),
 }
 
 

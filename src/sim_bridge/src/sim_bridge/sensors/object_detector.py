@@ -1,7 +1,7 @@
 """A detector of objects: reports those that its camera sees, by its declared model (planar.detection)."""
 
-from dataclasses import dataclass
-from typing import Tuple
+from dataclasses import dataclass, replace
+from typing import Sequence, Tuple
 
 import numpy as np
 
@@ -9,6 +9,7 @@ from planar import Pose2
 from planar.detection import Detection, DetectionModel, Detections
 from planar.maps.semantic_map import PlacedObject
 from sim_bridge.config import SimulationSettings
+from sim_bridge.description import RobotProfile
 from sim_bridge.geometry.pose3 import to_pose2
 from sim_bridge.sensors.base import Mounting, Schedule, SensorContext, every
 
@@ -73,3 +74,15 @@ class ObjectDetector:
         distance = float(np.linalg.norm(ray))
         lengths, _ = context.cast_rays(camera, (ray / distance)[None, :], distance)
         return bool(lengths[0] < distance - self._profile.model.depth)
+
+
+def with_object_detector(robot: RobotProfile, objects: Sequence[PlacedObject]) -> RobotProfile:
+    """Return a robot with a detector of objects; as it is if there are none.
+
+    Args:
+        robot: The robot.
+        objects: Where objects truly are in the world.
+    """
+    if not objects:
+        return robot
+    return replace(robot, sensors=(*robot.sensors, ObjectDetectorProfile(tuple(objects))))
