@@ -87,9 +87,9 @@ class SearchArea:
         for index in np.argsort(distances, kind="stable"):
             if distances[index] > REACH:
                 return None
-            at = self._standing_xy[index].tolist()
-            if np.isfinite(lengths[self.paths.node_at(*at)]):
-                return Pose2(*at, math.atan2(y - at[1], x - at[0]))
+            robot_x, robot_y = self._standing_xy[index].tolist()
+            if np.isfinite(lengths[self.paths.node_at(robot_x, robot_y)]):
+                return Pose2(robot_x, robot_y, math.atan2(y - robot_y, x - robot_x))
         return None
 
     def _lengths_from(self, pose: Pose2) -> np.ndarray:
