@@ -52,7 +52,7 @@ def check_pace(test):
     wait_until("scans", lambda: len(stamps) > first + 100, 60.0)
     gaps = [later - earlier for earlier, later in zip(stamps[first:], stamps[first + 1 :])]
     test.assertLess(max(gaps), SCAN_PERIOD + 1e-6, "the node misses no scan although it keeps only one")
-    test.assertLess(max(ahead[first:]), SCAN_PERIOD, "time waits for the work on each scan")
+    test.assertLess(max(ahead[first:]), -1e-6, "the clock shows the time of a scan after the work on it")
 
 
 def compute(seconds, stop=threading.Event()):

@@ -38,6 +38,12 @@ def test_ticks_are_at_multiples_of_the_shortest_period():
     assert stamps_of_ticks(quick, 0.17) == [0.0, 0.04, 0.08, 0.12, 0.16]
 
 
+def test_ticks_may_come_a_step_after_the_multiples():
+    coordinator = coordinator_of("/pick_objects")
+    coordinator.delay = STEP
+    assert stamps_of_ticks(coordinator, 0.35) == [0.0, 0.02, 0.12, 0.22, 0.32]
+
+
 def test_a_node_that_joins_late_gets_a_tick_at_once_with_all_members():
     coordinator = coordinator_of("/amcl")
     assert coordinator.begin_tick(0.0) == (1, True)

@@ -9,7 +9,7 @@ import pytest
 from sim_bridge.rest.barrier import MOST_NEWS, OTHERS_PATIENCE_SECONDS, RECOVERY_SECONDS, RestBarrier
 from sim_bridge.rest.threads import ProcessThreads, is_native
 
-PERIOD, QUIET, PATIENCE, LOOK = 0.05, 0.002, 5.0, 0.0005
+QUIET, PATIENCE, LOOK = 0.002, 5.0, 0.0005
 
 
 class Run:
@@ -18,18 +18,17 @@ class Run:
     AWAITED = frozenset({"amcl", "move_base", "planner", "spinning"})
 
     def __init__(self, **busy_until):
-        self.barrier = RestBarrier(PERIOD, QUIET, PATIENCE)
-        self.busy_until, self.wall, self.stamp = busy_until, 0.0, 0.0
+        self.barrier = RestBarrier(PATIENCE)
+        self.busy_until, self.wall = busy_until, 0.0
 
     def step(self, news_until=0.0):
-        """Wait until the next step of 0.05 s may be taken; return the wall time that it took."""
+        """Wait until the nodes have rested; return the wall time that it took."""
         begun = self.wall
-        while not self.barrier.may_step(
-            self.stamp, self.wall, self._nodes(), self.AWAITED, self.wall < news_until
+        while not self.barrier.is_passed(
+            self.wall, self._nodes(), self.AWAITED, self.wall < news_until, QUIET
         ):
             self.wall += LOOK
             assert self.wall - begun < 60.0, "the simulation stands still"
-        self.stamp += PERIOD
         return self.wall - begun
 
     def _nodes(self):
@@ -42,11 +41,21 @@ def test_time_passes_when_all_nodes_have_rested_for_a_while():
     assert run.step() == pytest.approx(QUIET, abs=2 * LOOK)
 
 
-def test_between_two_barriers_nothing_is_waited_for():
-    run = Run(move_base=0.0)
-    run.step()
-    run.busy_until["move_base"] = 1.0
-    assert run.barrier.may_step(PERIOD / 2, run.wall, run._nodes(), run.AWAITED, False)
+def test_a_node_without_a_name_is_waited_for():
+    """The master has none."""
+    run = Run()
+    run.busy_until[""] = 0.010
+    assert run.step() == pytest.approx(0.010 + QUIET, abs=2 * LOOK)
+
+
+def test_a_loop_that_looks_at_the_clock_does_not_prolong_the_wait():
+    """Seen running at each third look, as a loop that sleeps for a millisecond."""
+    barrier, looks = RestBarrier(PATIENCE), 0
+    nodes = {"move_base": lambda: looks % 3 != 1}
+    while not barrier.is_passed(looks * LOOK, nodes, ("move_base",), False, QUIET):
+        looks += 1
+        assert looks < 100
+    assert looks * LOOK <= QUIET + 2 * LOOK
 
 
 def test_a_message_that_arrives_is_processed_before_time_passes():
@@ -92,12 +101,12 @@ def test_a_node_that_has_ended_is_dropped():
     assert not run.barrier.given_up
 
 
-def test_time_that_restarts_has_barriers_again():
-    run = Run(amcl=0.0)
-    run.step()
+def test_time_that_restarts_begins_a_new_barrier():
+    run = Run(amcl=1.0)
+    assert not run.barrier.is_passed(0.0, run._nodes(), run.AWAITED, False, QUIET)
     run.barrier.reset()
-    run.stamp, run.busy_until["amcl"] = 0.0, run.wall + 0.01
-    assert run.step() > 0.01
+    run.wall, run.busy_until["amcl"] = 1.0, 1.0
+    assert run.step() == pytest.approx(QUIET, abs=LOOK)
 
 
 SPIN = "while True: pass"

@@ -96,10 +96,6 @@ class EpisodeSimulation:
         step = self._episode.step(command)
         return _state_of(step, self._simulation.scene.crowd.rows)
 
-    def trajectory_positions(self, trajectories: Sequence[ScriptedTrajectory], stamp: float) -> np.ndarray:
-        """Return the positions (N, 2) of scripted trajectories at a time."""
-        return np.array([trajectory.at(stamp) for trajectory in trajectories]).reshape(-1, 2)
-
     def close(self) -> None:
         self._simulation.close()
 

@@ -65,6 +65,9 @@ class NodeSettings:
     map_timeout: float = parameter(
         10.0, "wall-clock time to wait for a map to check the places against", "s", POSITIVE
     )
+    not_before: float = parameter(
+        0.0, "simulated time before which no mission starts, though all is ready", "s", ZERO_OR_MORE
+    )
 
     def __post_init__(self):
         check_parameters(self)

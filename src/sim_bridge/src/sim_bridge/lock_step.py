@@ -1,5 +1,6 @@
 """Lock-step of a simulation with its nodes: which nodes take part, which ticks they have answered."""
 
+import math
 from dataclasses import dataclass, field
 from typing import Dict, FrozenSet, List, Mapping, Optional, Tuple
 
@@ -34,10 +35,14 @@ class LockStepCoordinator:
 
     Args:
         latency: Time between a tick and the delivery of the messages sent at it [simulated s].
+
+    Attributes:
+        delay: Time of the ticks after the multiples of their period [simulated s].
     """
 
     def __init__(self, latency: float):
         self._latency = latency
+        self.delay = 0.0
         self.members: FrozenSet[str] = frozenset()
         self._members: Dict[str, _Member] = {}
         self._number = 0
@@ -123,5 +128,5 @@ class LockStepCoordinator:
         """Ticks are at multiples of the period, where sensors of that rate have just measured."""
         if self._members_changed or not self._members:
             return self._members_changed
-        period = self.period
-        return int((stamp + SAME) / period) > int((self._stamp + SAME) / period)
+        period, delay = self.period, self.delay - SAME
+        return math.floor((stamp - delay) / period) > math.floor((self._stamp - delay) / period)

@@ -46,11 +46,6 @@ def _drive_to_all(
     return failure
 
 
-def _has_truth_of(end: GoalEnded, referee: Referee) -> bool:
-    """Whether the true pose at the end of a goal is known."""
-    return referee.simulated_time >= end.stamp
-
-
 def _drive_to(run: Run, referee: Referee, move_base: MoveBaseClient, pose: Pose2, name: str) -> Optional[str]:
     outcome: Optional[DriveOutcome] = None
 

@@ -159,6 +159,8 @@ class PickObjectsNode:
         self._step.join(takes_turns=True)
         if not self._wait_for(lambda: not self._missing(), settings.server_timeout):
             return f"not ready after {settings.server_timeout:g} s: waiting for {', '.join(self._missing())}"
+        while rospy.get_time() < settings.not_before and not rospy.is_shutdown():
+            self._step.pause(POLL_SECONDS)
         return None
 
     def _missing(self) -> List[str]:

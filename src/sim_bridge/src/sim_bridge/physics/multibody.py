@@ -36,10 +36,6 @@ class KinematicTree:
     parents: List[int] = field(default_factory=lambda: [-1])
     frames: List[np.ndarray] = field(default_factory=lambda: [np.eye(4)])
 
-    def is_fixed(self) -> bool:
-        """Return whether the root is static."""
-        return self.bodies[0].mass is None
-
 
 def kinematic_trees(bodies: Sequence[Body], joints: Sequence[Joint]) -> List[KinematicTree]:
     """Group bodies into kinematic trees.

@@ -6,7 +6,6 @@ from itertools import chain
 from typing import Any, Callable, Dict, List, Mapping, Tuple
 
 import rospy
-from rosgraph_msgs.msg import Clock
 from visualization_msgs.msg import Marker
 
 from planar import PlanarError, Pose2
@@ -15,7 +14,7 @@ from planar.geometry.pose import pose_of_text
 from planar.maps.semantic_map import load_objects
 from planar_ros.lockstep import transport
 from planar_ros.lockstep.transport import LockstepConnection
-from planar_ros.messages.conversion import pose2_from_msg, time_of
+from planar_ros.messages.conversion import pose2_from_msg
 from planar_ros.node.parameters import parameters_below, read_settings, report_without_effect
 from planar_ros.node.runner import run
 from rospy_transport.replacements import install
@@ -66,7 +65,7 @@ class Bridge:
         settings, robot = (_read(kind) for kind in (BridgeSettings, RobotSettings))
         simulation_settings = _read(SimulationSettings, noise_named(settings.noise))
         rate = simulation_settings.odometry_rate
-        self._clock_steps = _steps_between(settings.clock_rate, rate, "clock_rate")
+        clock_steps = _steps_between(settings.clock_rate, rate, "clock_rate")
         joint_steps = _steps_between(settings.joint_state_rate, rate, "joint_state_rate")
         world = world_of(settings)
         if settings.dock:
@@ -78,15 +77,13 @@ class Bridge:
         self._calls = CallQueue()
         self._faults = FaultServer(settings.faults_file, settings.seed, self._calls)
         self._scene = Scene(world, simulation_settings, settings.seed, self._faults.wrappers)
-        self._steps = 0
         wait_for, static_publishers = map(_names, (settings.wait_for, settings.static_publishers))
         pacer = Pacer(settings.speed, wait_for)
         self._lock_step = LockStep(wait_for, static_publishers, settings.latency, self._calls)
-        self._clock = rospy.Publisher("/clock", Clock, queue_size=10, latch=True, tcp_nodelay=True)
         self._performance = Performance()
         bystanders = tuple(f"/{name}" for name in settings.bystanders.split())
         paced = PacedNodes(self._calls, self._lock_step.add_remark, settings.pace_all, bystanders)
-        self._time = TimeControl(self._scene, pacer, self._lock_step, paced, self._calls)
+        self._time = TimeControl(self._scene, pacer, self._lock_step, paced, self._calls, clock_steps)
         self._robots = RobotManager(self._scene, self._calls, joint_steps)
         for start in robots:
             self._robots.add(*start)
@@ -120,10 +117,6 @@ class Bridge:
     def _step(self):
         self._faults.update(self._scene, self._robots.step())
         self._gazebo.publish()
-        # Last, so that nodes which it wakes up find the data of this step.
-        self._steps += 1
-        if self._steps % self._clock_steps == 0:
-            self._clock.publish(time_of(self._scene.stamp))
         self._time.on_step_finished()
 
     def _on_box(self, message):

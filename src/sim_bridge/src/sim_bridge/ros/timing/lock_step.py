@@ -31,6 +31,9 @@ from sim_bridge.ros.timing.connection_monitor import ConnectionMonitor
 
 # Latched: why the run may not be repeatable, one reason a line.
 REMARKS_TOPIC = "/simulation/remarks"
+# Beside nodes that are not synchronised, ticks come this much after the scans [simulated s]: a loop that a
+# goal starts in such a node then has no instant in common with those that a scan has started.
+DELAY_BESIDE_OTHERS = 0.02
 # Time limit of an answer [wall s].
 ANSWER_SECONDS = 5.0
 
@@ -160,6 +163,7 @@ class LockStep:
         return True
 
     def _begin_tick(self, stamp: float) -> None:
+        self._coordinator.delay = DELAY_BESIDE_OTHERS if self.unable else 0.0
         begun = self._coordinator.begin_tick(stamp)
         if begun is None:
             return

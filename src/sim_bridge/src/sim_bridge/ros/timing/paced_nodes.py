@@ -7,7 +7,13 @@ from typing import Callable, Dict, FrozenSet, List, Optional, Tuple
 import rospy
 
 from rospy_transport.connections import has_unread
-from sim_bridge.rest.barrier import PATIENCE_SECONDS, RestBarrier
+from sim_bridge.rest.barrier import (
+    DATA_QUIET_SECONDS,
+    PATIENCE_SECONDS,
+    QUIET_SECONDS,
+    SETTLING_QUIET_SECONDS,
+    RestBarrier,
+)
 from sim_bridge.rest.threads import ProcessThreads
 from sim_bridge.ros.call_queue import CallQueue
 from sim_bridge.ros.timing.connection_check import ConnectionCheck
@@ -21,7 +27,10 @@ SETTLING_SECONDS = 2.0
 
 
 class PacedNodes:
-    """Holds simulated time at barriers until the nodes rest; called in the thread that owns the scene.
+    """Holds simulated time until the nodes rest; called in the thread that owns the scene.
+
+    Each step has two barriers, before its time is published on ``/clock`` and after: what wakes up by the
+    time finds the step's data processed.
 
     While nodes start, all others and the master have to rest as well, for a node that waits for an answer of
     another one rests, too. A node that runs on another machine, has ended or does not rest is not waited for;
@@ -51,7 +60,7 @@ class PacedNodes:
         self._submitted = 0
         self._reported: FrozenSet[str] = frozenset()
         self._search: Optional[threading.Thread] = None
-        self._has_searched = threading.Event()
+        self._searched: FrozenSet[str] = frozenset()
         self._changes = self._seen_changes = 0
         self._settled_at = 0.0
 
@@ -68,16 +77,22 @@ class PacedNodes:
             self._search = threading.Thread(target=self._find, daemon=True)
             self._search.start()
 
-    def may_step(self, stamp: float, is_answered: bool) -> bool:
-        """Return whether the next step may be taken.
+    @property
+    def are_any(self) -> bool:
+        """Whether there may be nodes to wait for."""
+        return bool(self._wanted) or self._paces_all
+
+    def have_rested(self, stamp: float, is_answered: bool, is_clock_sent: bool) -> bool:
+        """Return whether the nodes have rested at this barrier.
 
         Args:
             stamp: Present simulated time [s].
             is_answered: Whether all synchronised nodes have answered; they send messages before.
+            is_clock_sent: Whether this time has been published.
         """
-        if not self._wanted and not self._paces_all:
+        if not self.are_any:
             return True
-        if not self._has_searched.is_set():
+        if not self._searched.issuperset({MASTER, *self._wanted}):
             return False
         self._take_found()
         submitted = self._calls.submitted
@@ -87,13 +102,18 @@ class PacedNodes:
             self._seen_changes, self._settled_at = self._changes, stamp + SETTLING_SECONDS
         is_settling = stamp < self._settled_at
         chosen = self._threads.keys() & self._wanted
-        if is_settling or self._paces_all:
+        if is_settling:  # also the connections of the synchronised nodes
+            chosen = {*self._threads}
+        elif self._paces_all:
             chosen = self._threads.keys() - self._synchronised
         nodes = {name: self._rest_of(name, self._threads[name]) for name in sorted(chosen, reverse=True)}
         nodes[SYNCHRONISED] = lambda: is_answered
-        may_step = self._barrier.may_step(stamp, time.monotonic(), nodes, self._wanted, has_news, is_settling)
+        quiet = SETTLING_QUIET_SECONDS if is_settling else QUIET_SECONDS
+        if not is_clock_sent:
+            quiet = DATA_QUIET_SECONDS
+        is_passed = self._barrier.is_passed(time.monotonic(), nodes, self._wanted, has_news, quiet)
         self._report()
-        return may_step
+        return is_passed
 
     def waiting_for(self) -> List[str]:
         """Return the nodes that simulated time is stopped for, without slash."""
@@ -143,12 +163,12 @@ class PacedNodes:
             registrations = check.registrations()
             self._changes += registrations != before
             before = registrations
-            names = {MASTER, *registrations} - {rospy.get_name()}
+            names = {MASTER, *registrations, *self._wanted} - {rospy.get_name()}
             for name in names - self._found.keys():
                 if name.startswith(self._bystanders):
                     continue
                 pid = check.local_process(name)
                 if pid is not None:
                     self._found[name] = pid
-            self._has_searched.set()
+            self._searched = frozenset({*names, *self._searched})
             time.sleep(SEARCH_SECONDS)

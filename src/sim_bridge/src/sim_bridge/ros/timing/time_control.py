@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import List
 
 import rospy
+from rosgraph_msgs.msg import Clock
 from sim_bridge_msgs.srv import Step, StepResponse
 from std_msgs.msg import Header
 
@@ -43,10 +44,22 @@ class TimeControl:
         lock_step: Synchronised nodes.
         paced: Nodes that are not synchronised, and waited for.
         calls: Queue of the thread that owns the scene.
+        clock_steps: Number of steps between two messages of ``/clock``.
     """
 
-    def __init__(self, scene: Scene, pacer: Pacer, lock_step: LockStep, paced: PacedNodes, calls: CallQueue):
+    def __init__(
+        self,
+        scene: Scene,
+        pacer: Pacer,
+        lock_step: LockStep,
+        paced: PacedNodes,
+        calls: CallQueue,
+        clock_steps: int,
+    ):
         self.is_paused = False
+        self._clock = rospy.Publisher("/clock", Clock, queue_size=10, latch=True, tcp_nodelay=True)
+        self._clock_steps, self._steps = clock_steps, 0
+        self._is_clock_due = self._is_clock_sent = False
         self._lock_step = lock_step
         self._paced = paced
         self._scene = scene
@@ -81,6 +94,10 @@ class TimeControl:
         return may_step
 
     def _may_step(self) -> bool:
+        if self._is_clock_due:
+            if not self._have_nodes_rested():
+                return self._wait(LOOK_SECONDS)
+            self._publish_clock()
         if self.is_paused and not self._requests:
             return self._wait(LONGEST_WAIT_SECONDS)
         if not self._lock_step.may_step(self._scene.stamp):
@@ -104,7 +121,11 @@ class TimeControl:
             return True
         reporting = {f"/{name}" for name in self._pacer.reporting}
         self._paced.set_nodes(self._lock_step.unable - reporting, self._lock_step.members | reporting)
-        return self._paced.may_step(self._scene.stamp, self._lock_step.is_answered)
+        return self._paced.have_rested(self._scene.stamp, self._lock_step.is_answered, self._is_clock_sent)
+
+    def _publish_clock(self) -> None:
+        self._is_clock_due, self._is_clock_sent = False, True
+        self._clock.publish(time_of(self._scene.stamp))
 
     def _wait(self, seconds: float) -> bool:
         """Send what has been published, wait for calls, at most ``seconds``, and return False."""
@@ -122,7 +143,16 @@ class TimeControl:
         ]
 
     def on_step_finished(self) -> None:
-        """Count a step, and answer the calls of ``~step`` that are finished."""
+        """Count a step whose data has been published, and answer the calls of ``~step`` that are finished.
+
+        The time comes last, so that nodes which it wakes up find the data of this step.
+        """
+        self._steps += 1
+        self._is_clock_sent = False
+        if self._steps % self._clock_steps == 0:
+            self._is_clock_due = True
+            if not self._paced.are_any:
+                self._publish_clock()
         if self._requests:
             self._requests[0].steps_left -= 1
             self._answer_finished()
@@ -139,6 +169,7 @@ class TimeControl:
 
     def reset_simulation(self) -> None:
         self._scene.reset()
+        self._is_clock_due = False
         self._pacer.reset()
         self._lock_step.reset_time()
         self._paced.reset_time()
