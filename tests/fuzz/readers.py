@@ -94,6 +94,18 @@ def _places(path: Path) -> object:
     return load_places(path)
 
 
+def _semantic_map(path: Path) -> object:
+    from planar.maps.semantic_map import load_semantic_map
+
+    return load_semantic_map(path)
+
+
+def _objects(path: Path) -> object:
+    from planar.maps.semantic_map import load_objects
+
+    return load_objects(path)
+
+
 def _mission(path: Path) -> object:
     from pick_objects import load_mission
 
@@ -364,6 +376,13 @@ _URDF = _files(*(f"src/sim_bridge/src/sim_bridge/urdf/{name}.urdf" for name in (
 _FAULTS = (
     "faults:\n  - {kind: scan_late, start: 8, end: 12.5, strength: 0.5, seed: 3}\n  - {kind: kidnapped}\n"
 )
+_SEMANTIC_MAP = """\
+rooms: {kitchen: {kind: kitchen}}
+furniture:
+  counter: {kind: kitchen, room: kitchen, x: 1.0, y: 2.0, yaw: 0.1, size: [2.0, 0.6], height: 0.9}
+objects: {cup: {on: {kitchen: 3, table: 1}, in: {kitchen: 2}}}
+"""
+_OBJECTS = ["keys: {x: 1.0, y: 2.0, z: 0.4}\n"]
 _ZONES = "slow: {kind: speed, corners: [[0, 0], [1, 0], [1, 1]], max_speed: 0.2, enabled: false}\n"
 _INPUTS = "subscribers:\n  - {name: navi, topic: input/navi, timeout: 1.0, priority: 5}\npublisher: out\n"
 _ALL: Tuple[Reader, ...] = (
@@ -371,6 +390,8 @@ _ALL: Tuple[Reader, ...] = (
     Reader("map_image", "image.pgm", _map_image, _small_images),
     Reader("places", "places.yaml", _places, _files("map/zones.yaml")),
     Reader("mission", "mission.yaml", _mission, _MISSIONS),
+    Reader("semantic_map", "semantic_map.yaml", _semantic_map, _texts(_SEMANTIC_MAP)),
+    Reader("objects", "objects.yaml", _objects, _texts(*_OBJECTS)),
     Reader("faults", "faults.yaml", _faults, _texts(_FAULTS)),
     Reader("zones", "keep_out.yaml", _zones, _texts(_ZONES)),
     Reader("inputs", "mux.yaml", _inputs, _texts(_INPUTS)),

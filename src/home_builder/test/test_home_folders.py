@@ -10,10 +10,12 @@ import yaml
 from home_builder import FurniturePiece, HomePlan, Opening, Place, Room, Wall, Zone, build_home
 from home_builder.errors import InvalidPlanError
 from home_builder.palette import KINDS
+from home_builder.semantics import semantic_map_of
 from pick_objects import load_mission
 from planar import FREE, OCCUPIED, SettingsError, load_map
 from planar.maps.home_folder import load_home
 from planar.maps.places import load_pickup_and_dropoff, load_places, unreachable_reason
+from planar.maps.semantic_map import load_objects, load_semantic_map
 from sim_bridge import load_world
 
 WALLS = (
@@ -148,3 +150,58 @@ def test_the_robot_starts_at_the_origin_with_the_heading_of_the_plan(home, tmp_p
     assert math.sin(after.yaw - before.yaw + math.pi / 2.0) == pytest.approx(0.0, abs=0.1)
     corners = yaml.safe_load(turned.navigation_zones.read_text())["stairs"]["corners"]
     assert corners[0] == pytest.approx([2.0, -4.0])
+
+
+def test_the_semantic_map_names_rooms_and_furniture_where_they_are(home):
+    semantic_map = load_semantic_map(load_home(home).semantic_map)
+    assert semantic_map.rooms == {"kitchen": "kitchen", "bedroom": "bedroom"}
+    (bed,) = semantic_map.furniture.values()
+    assert (bed.name, bed.kind, bed.room) == ("bed in kitchen", "bed", "kitchen")
+    assert (bed.pose.x, bed.pose.y) == (-0.8, 3.0)  # in the frame of the start
+    assert math.isclose(bed.height, 0.55 * 0.9)
+    assert math.isclose(semantic_map.probabilities("book")["bed in kitchen"], 1.0)
+
+
+def test_edited_semantic_maps_and_objects_are_kept(home):
+    for name in ("semantic_map.yaml", "objects.yaml"):
+        edited = (home / name).read_text(encoding="utf-8").replace("book:", "atlas:")
+        (home / name).write_text(edited, encoding="utf-8")
+        remarks = build_home(PLAN, home)
+        assert f"{home / name}: kept, as it was edited" in remarks
+        assert "atlas:" in (home / name).read_text(encoding="utf-8")
+
+
+def test_objects_are_on_furniture_that_can_hold_them(home):
+    parts = load_home(home)
+    objects = {item.name: item for item in load_objects(parts.objects)}
+    assert objects.keys() == load_semantic_map(parts.semantic_map).objects.keys()
+    assert math.isclose(objects["cup"].z, 0.55 * 0.9)
+
+
+def test_a_home_without_furniture_has_a_semantic_map_without_any(tmp_path):
+    build_home(replace(PLAN, furniture=()), tmp_path / "bare")
+    parts = load_home(tmp_path / "bare")
+    assert "has no furniture" in load_semantic_map(parts.semantic_map).problem_with("cup")
+    assert load_objects(parts.objects) == ()
+
+
+def test_equal_pieces_of_a_room_are_numbered():
+    tables = [FurniturePiece("table", 1.0 + number, 2.0, 0.0, (0.5, 0.5, 0.7)) for number in range(2)]
+    outline = FurniturePiece(
+        "outline", 6.0, 3.0, 0.0, (1.0, 1.0, 0.8), "", ((-1.0, -0.5), (1.0, -0.5), (1.0, 0.5), (-1.0, 0.5))
+    )
+    named = FurniturePiece("shelf", 7.0, 1.0, 0.0, (1.0, 0.3, 1.8), "archive")
+    furniture = semantic_map_of(replace(PLAN, furniture=(*tables, outline, named))).furniture
+    assert list(furniture) == [
+        *("table in kitchen", "table 2 in kitchen", "furniture in bedroom", "archive"),
+    ]
+    assert sorted(round(side, 6) for side in furniture["furniture in bedroom"].size) == [1.0, 2.0]
+
+
+def test_the_semantic_map_of_a_turned_start_is_turned(home):
+    straight, turned = (
+        semantic_map_of(replace(PLAN, start_yaw=yaw)).furniture["bed in kitchen"].pose
+        for yaw in (0.0, math.pi / 2.0)
+    )
+    assert (turned.x, turned.y) == pytest.approx((straight.y, -straight.x))
+    assert math.sin(turned.yaw - straight.yaw) == pytest.approx(-1.0)

@@ -183,12 +183,14 @@ class DeliveryProgress:
         stage: Its stage.
         attempts: Goals sent for it so far.
         reason: Why it failed.
+        object_at: Where the robot reports its object to be in the map [m]; None if it does not know.
     """
 
     delivery: Delivery
     stage: DeliveryStage
     attempts: int
     reason: str
+    object_at: Optional[Tuple[float, float]] = None
 
 
 @dataclass(frozen=True)

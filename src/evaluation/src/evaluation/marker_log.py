@@ -3,7 +3,7 @@
 from typing import Iterable, List, Mapping
 
 from evaluation.events import DELETE, MarkerUpdated
-from evaluation.verdict import MissionRecord
+from evaluation.verdict import TRUE_PLACE, MissionRecord
 from planar import Pose2
 from planar.maps.places import NamedPlace
 
@@ -49,7 +49,11 @@ class MarkerLog:
         if marker.is_carried:
             return f"{marker.name} carried"
         records = [record for record in self._mission_record.deliveries if record.object == marker.name]
-        ends = [name for record in records for name in (record.source, record.destination)]
+        ends = [
+            name
+            for record in records
+            for name in (record.source or TRUE_PLACE.format(record.object), record.destination)
+        ]
         names = [name for name in ends if name in self._places]
         return f"{marker.name} at {self._nearest(_place_of(marker), names or self._places)}"
 

@@ -68,7 +68,7 @@ class WorldOptions:
             raise SettingsError(
                 f"--world: {self.world} does not belong to the home {self.home}; leave one of them out"
             )
-        for name in ("world", "map", "zones", "mission"):
+        for name in ("world", "map", "zones", "mission", "semantic_map", "objects"):
             if name in defaults and getattr(self, name) == defaults[name]:
                 object.__setattr__(self, name, getattr(home, name))
 
@@ -156,10 +156,20 @@ class MissionOptions(ErrandOptions, DrivingOptions):
     mission: Optional[Path] = option(
         None, "run the deliveries of this file instead (docs/reference/missions.md)", type=Path
     )
+    semantic_map: Optional[Path] = option(
+        None, "what is usually where, to search objects by (docs/how_to/find_objects.md)", type=Path
+    )
+    objects: Optional[Path] = option(
+        None, "where objects truly are, for the simulated detector (default: no detector)", type=Path
+    )
 
     def files(self) -> Dict[str, Any]:
-        mission = {} if self.mission is None else {"mission_file": self.mission.resolve()}
-        return {**super().files(), **mission}
+        given = {
+            "mission_file": self.mission,
+            "semantic_map_file": self.semantic_map,
+            "objects_file": self.objects,
+        }
+        return {**super().files(), **{key: path.resolve() for key, path in given.items() if path is not None}}
 
 
 @dataclass(frozen=True)

@@ -1,12 +1,27 @@
 """Verdict of a mission, by ground truth and not by the robot's estimate."""
 
 from dataclasses import dataclass, field
-from typing import Any, Dict, List, Optional, Sequence, Set
+from typing import Any, Dict, Iterable, List, Optional, Sequence, Set
+
+from planar.maps.places import NamedPlace
+from planar.maps.semantic_map import PlacedObject
 
 ARRIVAL_TOLERANCE = 0.25
 ERRAND, MARKERS, OBJECTS, DEMO = "errand", "markers", "objects", "demo"
 EXPECTED_MARKERS = ["shown at pickup", "hidden", "shown at dropoff"]
+# Name of the place, among those of a run, where an object that is searched truly is.
+TRUE_PLACE = "true place of {}"
 FINAL_STATES = ("delivered", "failed", "cancelled")
+
+
+def true_places(objects: Iterable[PlacedObject]) -> Dict[str, NamedPlace]:
+    """Return the places by which searches are judged, by name.
+
+    Args:
+        objects: Where objects truly are.
+    """
+    names = {item.name: TRUE_PLACE.format(item.name) for item in objects}
+    return {names[item.name]: NamedPlace(names[item.name], item.pose) for item in objects}
 
 
 @dataclass
@@ -16,14 +31,15 @@ class DeliveryRecord:
     Attributes:
         name: Name of the delivery.
         object: Object to carry.
-        source: Place where it is picked up.
-        destination: Place where it is set down.
+        source: Place where it is picked up; empty: it is searched.
+        destination: Place where it is set down; empty: it is only to be found.
         state: Last published state.
         attempts: Goals sent for it.
         retries: Goals beyond one to each of its places.
         reason: Why it failed.
         pickup_error: True distance from the nearest pose of the source at the pick-up, before it on
-            arrival [m].
+            arrival; of an object that was searched that beyond the robot's reach, of one that was only to be
+            found that of where it was reported [m].
         dropoff_error: The same at the destination and the set-down [m].
     """
 
@@ -58,7 +74,10 @@ class DeliveryRecord:
         """Why the delivery is not proven; None if it is."""
         if self.state != "delivered":
             return f"{self.name} is {self.state}" + (f": {self.reason}" if self.reason else "")
-        for place, error in ((self.source, self.pickup_error), (self.destination, self.dropoff_error)):
+        if not self.destination:
+            return self._finding_failure
+        source = self.source or TRUE_PLACE.format(self.object)
+        for place, error in ((source, self.pickup_error), (self.destination, self.dropoff_error)):
             if error is None:
                 return f"the robot never reported its arrival at {place}"
             if error > ARRIVAL_TOLERANCE:
@@ -66,10 +85,20 @@ class DeliveryRecord:
         return None
 
     @property
+    def _finding_failure(self) -> Optional[str]:
+        if self.pickup_error is None:
+            return f"it is not known where {self.object} truly is"
+        if self.pickup_error > ARRIVAL_TOLERANCE:
+            return f"{self.object} truly is {self.pickup_error:.2f} m from where it was reported"
+        return None
+
+    @property
     def expected_markers(self) -> List[str]:
         """Changes that the object's marker must have shown, in order."""
-        places = (self.source, self.destination)
-        return [f"{self.object} at {places[0]}", f"{self.object} carried", f"{self.object} at {places[1]}"]
+        if not self.destination:
+            return []
+        source = [f"{self.object} at {self.source}"] if self.source else []
+        return [*source, f"{self.object} carried", f"{self.object} at {self.destination}"]
 
 
 @dataclass
@@ -97,7 +126,8 @@ class MissionRecord:
         """Position error at each place that the robot arrived at [m]."""
         errors = {}
         for record in self.deliveries:
-            errors[record.source], errors[record.destination] = record.pickup_error, record.dropoff_error
+            errors[record.source or record.object] = record.pickup_error
+            errors[record.destination] = record.dropoff_error
         return {place: error for place, error in errors.items() if error is not None}
 
     def result_fields(self) -> Dict[str, Any]:
@@ -178,5 +208,6 @@ def _success_reason(record: MissionRecord, expected: Set[str]) -> str:
     if ERRAND not in expected:
         return f"the marker was {', '.join(record.markers)}"
     worst = max(record.position_errors.values())
-    what = record.reason if len(record.deliveries) > 1 else "picked up and delivered"
+    is_delivery = len(record.deliveries) == 1 and record.deliveries[0].destination
+    what = "picked up and delivered" if is_delivery else record.reason
     return f"{what}, at most {worst:.2f} m off, no collision"

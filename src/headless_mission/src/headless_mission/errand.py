@@ -3,10 +3,11 @@
 from typing import Optional
 
 from headless_mission.navigation import EpisodeMoveBaseClient, NavigationHooks
-from pick_objects import Errand, FinishTask, GoalDriver, Mission
+from pick_objects import Errand, FinishTask, GoalDriver, Mission, SearchArea
 from pick_objects.errand import Event
 from sim_bridge import Episode, EpisodeHooks, StepResult
 from sim_bridge.config import LATENCY
+from sim_bridge.sensors.object_detector import ObjectDetector
 
 # Time from the first estimate until the client of move_base has connected: two messages, a request and its
 # answer [s]. Stamps that differ by less than SAME are equal [s].
@@ -21,6 +22,7 @@ class ErrandHooks(EpisodeHooks):
         navigation: move_base in the episode.
         client: Client of move_base.
         start: Simulated time from which on the mission may start [s]; None: once the client has connected.
+        area: Where objects can be searched; None if there is no semantic map.
 
     Attributes:
         errand: State of the mission.
@@ -35,11 +37,17 @@ class ErrandHooks(EpisodeHooks):
         navigation: NavigationHooks,
         client: EpisodeMoveBaseClient,
         start: Optional[float] = None,
+        area: Optional[SearchArea] = None,
     ):
-        self.errand, self.driver = Errand(mission), GoalDriver(client)
+        self.errand, self.driver = Errand(mission, area), GoalDriver(client)
         self.is_started = False
         self.end: Optional[FinishTask] = None
         self._navigation, self._start = navigation, start
+
+    def after_step(self, episode: Episode, step: StepResult) -> None:
+        reading = step.readings.get(ObjectDetector.name)
+        if reading is not None:
+            self.driver.add_detections(reading.stamp, reading.value)
 
     def at_tick(self, episode: Episode, step: StepResult) -> None:
         if self._navigation.base_in_map is None:
@@ -54,6 +62,7 @@ class ErrandHooks(EpisodeHooks):
     def _advance(self, now: float) -> None:
         event: Optional[Event] = self.driver.event(now)
         while True:
+            self.errand.base_in_map = self.driver.base_in_map
             order = self.errand.advance(now, event)
             event = self.driver.carry_out(order)
             if event is None:

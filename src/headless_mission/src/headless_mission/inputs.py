@@ -1,7 +1,7 @@
 """Inputs of a command, read before anything is started, so that a mistake is reported first."""
 
-from dataclasses import dataclass
-from typing import Iterable, Mapping
+from dataclasses import dataclass, replace
+from typing import Iterable, Mapping, Optional
 
 from evaluation.options import (
     ErrandOptions,
@@ -11,11 +11,14 @@ from evaluation.options import (
     MissionOptions,
     WorldOptions,
 )
+from evaluation.verdict import true_places
 from pick_objects import Mission, errand_mission, load_mission
 from planar import OccupancyGrid, Pose2, SettingsError, load_map
 from planar.maps.places import NamedPlace, load_pickup_and_dropoff, load_places, unreachable_reason
+from planar.maps.semantic_map import SemanticMap, load_objects, load_semantic_map
 from sim_bridge import RobotProfile, load_world, robot_named
 from sim_bridge.docks import with_dock
+from sim_bridge.sensors.object_detector import with_object_detector
 from sim_bridge.world import World
 
 # Frames of the launch files of localization, SLAM and navigation (REP 105).
@@ -39,10 +42,11 @@ class HomeInputs(WorldInputs):
 
 @dataclass(frozen=True, eq=False)
 class MissionInputs(HomeInputs):
-    """A mission, and all named places."""
+    """A mission, all named places with the true ones of objects, and what is usually where."""
 
     mission: Mission
     places: Mapping[str, NamedPlace]
+    semantic_map: Optional[SemanticMap] = None
 
 
 def read_world(options: WorldOptions) -> WorldInputs:
@@ -124,9 +128,16 @@ def read_errand(options: ErrandOptions) -> MissionInputs:
 
 
 def read_mission(options: MissionOptions) -> MissionInputs:
-    """Read the mission, or the errand if no mission is given."""
+    """Read the mission, or the errand if no mission is given, and what is needed to search objects."""
+    semantic_map = None if options.semantic_map is None else load_semantic_map(options.semantic_map)
+    objects = () if options.objects is None else load_objects(options.objects)
     if options.mission is None:
-        return read_errand(options)
-    home, zones = read_home(options), load_places(options.zones)
-    mission = load_mission(options.mission, zones, grid=home.grid)
-    return MissionInputs(home.world, home.robot, home.grid, mission, mission.places)
+        inputs = read_errand(options)
+    else:
+        home, zones = read_home(options), load_places(options.zones)
+        mission = load_mission(options.mission, zones, grid=home.grid, semantic_map=semantic_map)
+        inputs = MissionInputs(home.world, home.robot, home.grid, mission, mission.places)
+    inputs.mission.check_searches(semantic_map)
+    robot = with_object_detector(inputs.robot, objects)
+    places = {**inputs.places, **true_places(objects)}
+    return replace(inputs, robot=robot, places=places, semantic_map=semantic_map)

@@ -18,12 +18,14 @@ from headless_mission.localization import LocalizationHooks
 from headless_mission.navigation import EpisodeMoveBaseClient, NavigationHooks
 from headless_mission.observers import MissionObserver
 from headless_mission.result import EpisodeResult
-from pick_objects import FinishTask, Mission
+from pick_objects import FinishTask, Mission, SearchArea
 from planar import OccupancyGrid
+from planar.maps.semantic_map import SemanticMap
 from sim_bridge import Episode, RobotProfile, Simulation
 from sim_bridge.config import LATENCY
 from sim_bridge.faults import FaultInjector
 from sim_bridge.sensors.lidar import LaserProfile
+from sim_bridge.sensors.object_detector import ObjectDetectorProfile
 from sim_bridge.world import World
 
 
@@ -38,6 +40,7 @@ class HeadlessMission:
         seed: Seed of noise, particles and faults.
         parcel: Marker of an errand, checked by the verdict; None: no marker.
         conditions: Deviations from the defaults.
+        semantic_map: What is usually where, to search objects by; None: nothing can be searched.
     """
 
     def __init__(
@@ -49,6 +52,7 @@ class HeadlessMission:
         seed: int,
         parcel: Optional[CarriedParcel] = None,
         conditions: EpisodeConditions = EpisodeConditions(),
+        semantic_map: Optional[SemanticMap] = None,
     ):
         start, settings = conditions.start, conditions.navigation(NAVIGATION_CONFIG)
         encoding, grid = conditions.encoding, conditions.encoding.grid(grid)
@@ -58,8 +62,10 @@ class HeadlessMission:
         )
         navigation = NavigationHooks(settings, grid, encoding, conditions.zones)
         client = EpisodeMoveBaseClient(navigation, encoding)
-        self._errand = errand = ErrandHooks(mission, navigation, client, conditions.mission_start)
-        self._observer = MissionObserver(simulation, navigation, errand, parcel)
+        area = None if semantic_map is None else SearchArea(grid, semantic_map)
+        self._errand = errand = ErrandHooks(mission, navigation, client, conditions.mission_start, area)
+        objects = [each for detector in robot.sensors_of(ObjectDetectorProfile) for each in detector.objects]
+        self._observer = MissionObserver(simulation, navigation, errand, parcel, objects)
         boxes = BoxHooks(simulation, grid, errand)
         on_fit = errand.driver.add_fit
         localization = LocalizationHooks(grid, seed, start, navigation.poses, on_fit, encoding)
@@ -87,7 +93,7 @@ class HeadlessMission:
 
 def _without_unused_sensors(robot: RobotProfile) -> RobotProfile:
     """Drop bumpers, cliff sensors and cameras, which nothing reads here and which cost time."""
-    return replace(robot, sensors=robot.sensors_of(LaserProfile))
+    return replace(robot, sensors=(*robot.sensors_of(LaserProfile), *robot.sensors_of(ObjectDetectorProfile)))
 
 
 def parcel_for(errand: Mission) -> CarriedParcel:

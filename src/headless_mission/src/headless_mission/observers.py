@@ -1,6 +1,6 @@
 """Observers of an episode: they publish its run events, and nothing in the episode depends on them."""
 
-from typing import List, Optional, Set, Tuple
+from typing import List, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
@@ -21,12 +21,13 @@ from evaluation.events import (
 )
 from evaluation.marker_log import PARCEL
 from evaluation.pedestrian_contacts import PedestrianContacts
-from evaluation.verdict import ERRAND, MARKERS
+from evaluation.verdict import ERRAND, MARKERS, true_places
 from headless_mission.errand import ErrandHooks
 from headless_mission.navigation import NavigationHooks
 from headless_mission.result import EpisodeResult
-from pick_objects import FinishTask
+from pick_objects import Delivery, Errand, FinishTask
 from planar import Pose2, Twist2
+from planar.maps.semantic_map import PlacedObject
 from sim_bridge import Episode, EpisodeHooks, Simulation, StepResult
 
 
@@ -82,6 +83,7 @@ class MissionObserver(ContactObserver):
         navigation: move_base in the episode.
         errand: The mission.
         parcel: Marker of an errand, checked by the verdict; None: no marker.
+        objects: Where objects truly are.
     """
 
     def __init__(
@@ -90,10 +92,12 @@ class MissionObserver(ContactObserver):
         navigation: NavigationHooks,
         errand: ErrandHooks,
         parcel: Optional[CarriedParcel],
+        objects: Sequence[PlacedObject] = (),
     ):
         super().__init__(simulation)
         self._navigation, self._errand, self._parcel = navigation, errand, parcel
-        self._referee = Referee(errand.errand.mission.places, log=lambda line: None)
+        places = {**errand.errand.mission.places, **true_places(objects)}
+        self._referee = Referee(places, log=lambda line: None)
         self._referee.attach(self.events)
         self._diagnosis = Latest(SensorDistrusted)
         self._diagnosis.attach(self.events)
@@ -146,8 +150,17 @@ class MissionObserver(ContactObserver):
         errand, end, last = self._errand.errand, self._errand.end, self._published_mission
         state, reason = errand.state.value, "" if end is None else end.reason
         deliveries = tuple(
-            DeliveryProgress(job.delivery, job.stage, job.attempts, job.reason) for job in errand.jobs
+            DeliveryProgress(
+                job.delivery, job.stage, job.attempts, job.reason, _reported_at(errand, job.delivery)
+            )
+            for job in errand.jobs
         )
         if last is None or (last.state, last.reason, last.deliveries) != (state, reason, deliveries):
             self._published_mission = MissionUpdated(stamp, state, deliveries, reason)
             self.events.publish(self._published_mission)
+
+
+def _reported_at(errand: Errand, delivery: Delivery) -> Optional[Tuple[float, float]]:
+    """Return where the robot knows the object of a delivery to be [m]; None if it does not."""
+    location = errand.object_locations.get(delivery.object_name)
+    return None if location is None else (location.pose.x, location.pose.y)

@@ -16,6 +16,7 @@ from home_builder.plan.frames import plan_in_world
 from home_builder.plan.geometry import room_faces
 from home_builder.plan.model import SPEED, HomePlan, Place
 from home_builder.sdf import world_text
+from home_builder.semantics import objects_text, semantic_map_of, semantic_map_text
 from home_builder.standing import DROPOFF, PICKUP, all_places
 from pick_objects import ErrandSettings
 from planar import OccupancyGrid, save_map
@@ -35,12 +36,13 @@ from planar.maps.home_folder import (
     changed_files,
     manifest_text,
 )
+from planar.maps.semantic_map import OBJECTS, SEMANTIC_MAP
 from sim_bridge import load_world
 from sim_bridge.views.top_view import render_top_view
 from sim_bridge.views.true_map import true_map
 
 # Files that people edit; edited ones are kept when the home is built again.
-EDITABLE = (ZONES, MISSION, NAVIGATION_ZONES)
+EDITABLE = (ZONES, MISSION, NAVIGATION_ZONES, SEMANTIC_MAP, OBJECTS)
 RESOLUTION = 0.05
 # Deliveries of the mission that is written, and digits of coordinates.
 MOST_DELIVERIES, DIGITS = 3, 3
@@ -112,10 +114,12 @@ def _png(pixels) -> bytes:
 
 
 def _zone_files(plan: HomePlan, grid: OccupancyGrid) -> Dict[str, bytes]:
-    places = all_places(plan, grid)
+    places, semantic_map = all_places(plan, grid), semantic_map_of(plan)
     files = {
         ZONES: _zones_text(places),
         MISSION: _mission_text(plan, places, grid),
+        SEMANTIC_MAP: semantic_map_text(semantic_map),
+        OBJECTS: objects_text(semantic_map, plan.name),
     }
     if plan.zones:
         files[NAVIGATION_ZONES] = _navigation_text(plan)

@@ -9,6 +9,7 @@ from pick_objects.goal_driver import GoalDriver, MoveBasePort
 from pick_objects.job import DeliveryJob, DeliveryStage, ErrandState, ObjectLocation
 from pick_objects.mission import Delivery, Mission, MissionError, MissionObject, errand_mission
 from pick_objects.mission_file import load_mission, parse_mission
+from pick_objects.search import LookForObject, LookTaken, SearchArea
 from planar.driving import FinishTask, GoalFailed, GoalReached, RobotDisplaced
 
 __all__ = [
@@ -25,6 +26,8 @@ __all__ = [
     "RobotDisplaced",
     "GoalReached",
     "GoalFailed",
+    "LookForObject",
+    "LookTaken",
     "MeasurePathLengths",
     "Mission",
     "MissionError",
@@ -34,6 +37,7 @@ __all__ = [
     "PathLengthsMeasured",
     "RecentScanFit",
     "ResendGoal",
+    "SearchArea",
     "checkpoint_of",
     "errand_mission",
     "load_mission",

@@ -6,6 +6,7 @@ from typing import Any, Dict, Mapping, Optional, Sequence
 from pick_objects.errand import Errand
 from pick_objects.job import DeliveryJob, DeliveryStage, ObjectLocation
 from pick_objects.mission import Delivery, Mission
+from pick_objects.search.area import SearchArea
 from planar import PlanarError, Pose2
 
 RESUMED_STAGE = {
@@ -41,8 +42,10 @@ def checkpoint_of(errand: Errand) -> Dict[str, Any]:
     }
 
 
-def resume_errand(mission: Mission, record: Mapping[str, Any]) -> Optional[Errand]:
-    """Restore an interrupted errand of a mission from a checkpoint.
+def resume_errand(
+    mission: Mission, record: Mapping[str, Any], area: Optional[SearchArea] = None
+) -> Optional[Errand]:
+    """Restore an interrupted errand of a mission from a checkpoint; ``area`` as of ``Errand``.
 
     Returns:
         The errand; None if the checkpoint belongs to another mission.
@@ -51,14 +54,14 @@ def resume_errand(mission: Mission, record: Mapping[str, Any]) -> Optional[Erran
         CheckpointError: If the checkpoint is malformed.
     """
     try:
-        return _resumed(mission, record)
+        return _resumed(mission, record, area)
     except CheckpointError:
         raise
     except (PlanarError, LookupError, TypeError, ValueError, AttributeError) as error:
         raise CheckpointError(f"no checkpoint of a mission ({type(error).__name__}: {error})") from error
 
 
-def _resumed(mission: Mission, record: Mapping[str, Any]) -> Optional[Errand]:
+def _resumed(mission: Mission, record: Mapping[str, Any], area: Optional[SearchArea]) -> Optional[Errand]:
     if record["mission"] != mission.name:
         return None
     jobs = [_job(entry) for entry in record["jobs"]]
@@ -75,7 +78,7 @@ def _resumed(mission: Mission, record: Mapping[str, Any]) -> Optional[Errand]:
     carried = {name for name, where in locations.items() if where.is_carried}
     carrying = [job.delivery.object_name for job in jobs if job.stage is DeliveryStage.CARRYING]
     _require(len(carrying) <= 1 and carried == set(carrying), "what is carried is not of one delivery")
-    errand = Errand(mission)
+    errand = Errand(mission, area)
     errand.resume(jobs, locations, bool(record["is_cancelled"]), _texts(record["added"]))
     return errand
 

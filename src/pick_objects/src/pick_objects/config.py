@@ -46,6 +46,10 @@ class NodeSettings:
     mission_file: str = parameter(
         "", "YAML file of a mission; empty: from the place pickup to the place dropoff"
     )
+    semantic_map_file: str = parameter(
+        "",
+        "YAML of what is usually where, to search objects by (docs/how_to/find_objects.md); or empty",
+    )
     serve: bool = parameter(False, "wait for missions sent to the action deliver, until shutdown")
     wait_for: str = parameter(
         "", "further nodes of this project, separated by spaces, that must be ready before the mission starts"

@@ -17,6 +17,8 @@ from pick_objects.job import (
 )
 from pick_objects.mission import Delivery, Mission, MissionError
 from pick_objects.schedule import DeliverySchedule
+from pick_objects.search.area import SearchArea
+from pick_objects.search.execution import LookForObject, LookTaken
 from planar import Pose2
 from planar.driving import FinishTask, GoalFailed, GoalReached, RobotDisplaced
 from planar.elapsed_time import ElapsedTime
@@ -45,8 +47,8 @@ class PathLengthsMeasured:
     lengths: Tuple[Optional[float], ...]
 
 
-Order = Union[DriveToPlace, MeasurePathLengths, FinishTask]
-Event = Union[GoalReached, GoalFailed, RobotDisplaced, PathLengthsMeasured]
+Order = Union[DriveToPlace, LookForObject, MeasurePathLengths, FinishTask]
+Event = Union[GoalReached, GoalFailed, RobotDisplaced, PathLengthsMeasured, LookTaken]
 
 
 class Errand:
@@ -54,16 +56,18 @@ class Errand:
 
     Args:
         mission: Mission to carry out.
+        area: Where objects can be searched; None if there is no semantic map.
 
     Attributes:
-        object_locations: Location of each object, by name.
+        base_in_map: Estimated pose of the robot; set it before ``advance``.
+        object_locations: Location of each object that is known, by name.
         added: Names of the deliveries that were added to the mission.
         is_cancelled: The whole mission was cancelled.
         reason: How the mission ended, in words; empty while it is running.
     """
 
-    def __init__(self, mission: Mission):
-        self.mission = mission
+    def __init__(self, mission: Mission, area: Optional[SearchArea] = None):
+        self.mission, self.base_in_map, self._area = mission, Pose2(), area
         self.object_locations: Dict[str, ObjectLocation] = {}
         self.added: Set[str] = set()
         self.reason = ""
@@ -93,6 +97,7 @@ class Errand:
             return self._apply_order(now, event)
         if self._execution is None or self._execution.job.stage is DeliveryStage.CANCELLED:
             return self._begin_next(now)
+        self._execution.base_in_map = self.base_in_map
         order = self._execution.advance(now, None if isinstance(event, PathLengthsMeasured) else event)
         return self._begin_next(now) if self._execution.job.stage in ENDED else order
 
@@ -106,8 +111,9 @@ class Errand:
             MissionError: If the mission is over or the delivery is not valid.
         """
         self._refuse_if_over()
-        self.mission = self.mission.with_delivery(delivery)
-        added = self.mission.deliveries[-1]
+        mission = self.mission.with_delivery(delivery)
+        mission.check_searches(self._area.semantic_map if self._area else None)
+        self.mission, added = mission, mission.deliveries[-1]
         self.added.add(added.name)
         self._schedule.add(added)
         self._place_objects()
@@ -162,6 +168,8 @@ class Errand:
             return self._final_state
         if self._is_measuring:
             return ErrandState.ORDERING
+        if self._execution is not None and self._execution.is_searching:
+            return ErrandState.SEARCHING
         return STATE_OF_STAGE.get(self.job.stage, ErrandState.READY) if self.job else ErrandState.READY
 
     @property
@@ -194,20 +202,8 @@ class Errand:
         """Estimate the remaining time of the mission [s]."""
         if self._is_over:
             return 0.0
-        settings, places, where = self.mission.settings, self.mission.places, self.place
         left = self._driving_time.seconds_left(self._elapsed.update(now))
-        for job in self.jobs:
-            if job.stage in ENDED:
-                continue
-            source, destination = places[job.delivery.source], places[job.delivery.destination]
-            if job.stage.value < DeliveryStage.PICKING_UP.value and where:
-                left += self._driving_time.seconds_between(where.pose, source.pose)
-            if job.stage.value < DeliveryStage.CARRYING.value:
-                left += settings.pickup_seconds
-                left += self._driving_time.seconds_between(source.pose, destination.pose)
-            left += settings.dropoff_seconds
-            where = destination
-        return left
+        return left + self._driving_time.seconds_for(self.jobs, self.mission, self.place)
 
     def _begin_next(self, now: float) -> Order:
         while True:
@@ -223,8 +219,9 @@ class Errand:
                 job = self._schedule.next_job()
             approach = self._execution.approach if self._execution else None
             self._execution = DeliveryExecution(
-                job, self.mission, self.object_locations, self._driving_time, approach
+                job, self.mission, self.object_locations, self._driving_time, approach, self._area
             )
+            self._execution.base_in_map = self.base_in_map
             order = self._execution.start(now)
             if order is not None:
                 return order
@@ -253,7 +250,8 @@ class Errand:
             )
         if all(job.stage is DeliveryStage.CANCELLED for job in self.jobs):
             return self._end("cancelled")
-        return self._end(f"delivered at place {self.jobs[-1].delivery.destination}")
+        last = self.jobs[-1]
+        return self._end(last.reason or f"delivered at place {last.delivery.destination}")
 
     def _end(self, reason: str) -> FinishTask:
         self._is_over, self.reason = True, self._summary(reason)
@@ -286,7 +284,12 @@ class Errand:
             raise MissionError("the mission is over")
 
     def _place_objects(self) -> None:
-        """Locate each object at the source of its first delivery."""
+        """Locate each object at the source of its first delivery, if it is known."""
+        moved: Set[str] = set()
         for delivery in self.mission.deliveries:
+            is_first = delivery.object_name not in moved
+            moved.add(delivery.object_name)
+            if not delivery.source or not is_first:
+                continue
             source = self.mission.places[delivery.source]
             self.object_locations.setdefault(delivery.object_name, ObjectLocation(source.name, source.pose))

@@ -13,6 +13,7 @@ class ErrandState(enum.Enum):
 
     READY = "ready"
     ORDERING = "choosing the order"
+    SEARCHING = "searching"
     GOING_TO_PICKUP = "going to pickup"
     PICKING_UP = "picking up"
     GOING_TO_DROPOFF = "going to dropoff"
@@ -55,7 +56,7 @@ class DeliveryJob:
         delivery: What to carry where.
         stage: How far it has come.
         attempts: Goals sent for it so far.
-        reason: Why it failed or was cancelled.
+        reason: Why it failed or was cancelled; where an object that was only to be found is.
     """
 
     delivery: Delivery

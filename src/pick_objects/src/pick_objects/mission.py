@@ -1,12 +1,13 @@
 """Missions: objects, and deliveries of them between places."""
 
 from dataclasses import dataclass, field, replace
-from itertools import count
+from itertools import count, takewhile
 from typing import Mapping, Optional, Tuple
 
 from pick_objects.config import ErrandSettings
 from planar import PlanarError
 from planar.maps.places import NamedPlace
+from planar.maps.semantic_map import SemanticMap
 
 ORANGE = (0.9, 0.4, 0.1)
 
@@ -34,13 +35,13 @@ class MissionObject:
 
 @dataclass(frozen=True)
 class Delivery:
-    """An object to be carried from one place to another; all are referred to by name.
+    """An object to be carried from one place to another, or to be found; all are referred to by name.
 
     Attributes:
         name: Unique name in the mission.
-        object_name: Object to carry.
-        source: Place where the object is.
-        destination: Place where it is to be set down.
+        object_name: Object to carry or to find.
+        source: Place where the object is; empty: where it is known to be, else it is searched.
+        destination: Place where it is to be set down; empty: it is only to be found.
         after: Deliveries that must be completed before.
         goal_timeout: Time-out of a goal [s]; None: that of the mission.
     """
@@ -51,6 +52,12 @@ class Delivery:
     destination: str
     after: Tuple[str, ...] = ()
     goal_timeout: Optional[float] = None
+
+    def __str__(self) -> str:
+        if not self.destination:
+            return f"find {self.object_name}"
+        source = f" from {self.source}" if self.source else ""
+        return f"{self.object_name}{source} to {self.destination}"
 
 
 @dataclass(frozen=True)
@@ -75,6 +82,34 @@ class Mission:
         """Return the object of that name, with default properties if it is not described."""
         return self.objects.get(name, MissionObject(name))
 
+    def is_searched(self, delivery: Delivery) -> bool:
+        """Whether the object of a delivery has to be searched: nothing states where it is."""
+        earlier = takewhile(lambda each: each.name != delivery.name, self.deliveries)
+        return not delivery.source and not any(each.object_name == delivery.object_name for each in earlier)
+
+    def check_searches(self, semantic_map: Optional[SemanticMap]) -> None:
+        """Check that all objects that have to be searched can be.
+
+        Args:
+            semantic_map: What is usually where; None: unknown.
+
+        Raises:
+            MissionError: If one cannot.
+        """
+        for delivery in self.deliveries:
+            if not delivery.source and self.settings.order == "shortest":
+                raise MissionError(f"{delivery}: the order shortest needs from; expected order: given")
+            if not self.is_searched(delivery):
+                continue
+            if semantic_map is None:
+                raise MissionError(
+                    f"{delivery}: it has to be searched, and there is no semantic map; add from: PLACE, or "
+                    "take a home of build_home.sh (--home FOLDER)"
+                )
+            problem = semantic_map.problem_with(delivery.object_name)
+            if problem:
+                raise MissionError(f"{delivery}: {problem}")
+
     def with_delivery(self, delivery: Delivery) -> "Mission":
         """Return the mission with one more delivery, which is given a name if it has none.
 
@@ -90,10 +125,12 @@ class Mission:
             raise MissionError(f"there is a delivery {name} already")
         if not named.object_name:
             raise MissionError(f"{name}: no object is named")
-        for place in (named.source, named.destination):
+        if named.source and not named.destination:
+            raise MissionError(f"{name}: an object that is only to be found has no place where it is")
+        for place in filter(None, (named.source, named.destination)):
             if place not in self.places:
                 raise MissionError(f"{name}: there is no place '{place}'; known are {', '.join(self.places)}")
-        if named.source == named.destination:
+        if named.source and named.source == named.destination:
             raise MissionError(f"{name}: {named.object_name} is at {named.source} already")
         return replace(self, deliveries=(*self.deliveries, named))
 

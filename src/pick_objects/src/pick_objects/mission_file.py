@@ -12,6 +12,7 @@ from planar.config.settings import settings_from
 from planar.config.yaml_table import Table, parse_table, read_table
 from planar.geometry.grid import OccupancyGrid
 from planar.maps.places import NamedPlace, obstruction_at, parse_place
+from planar.maps.semantic_map import SemanticMap
 
 Places = Mapping[str, NamedPlace]
 MAX_SOLID_SIZE = 0.25
@@ -23,6 +24,7 @@ def load_mission(
     known_places: Places = {},
     defaults: ErrandSettings = ErrandSettings(),
     grid: Optional[OccupancyGrid] = None,
+    semantic_map: Optional[SemanticMap] = None,
 ) -> Mission:
     """Read a mission file.
 
@@ -31,11 +33,12 @@ def load_mission(
         known_places: Places that it may refer to in addition to its own.
         defaults: Settings that it leaves out.
         grid: Map in which all its places must be free; None: not checked.
+        semantic_map: What can be searched; None: not checked.
 
     Raises:
         SettingsError: With file, line and key.
     """
-    return _mission(read_table(path), str(path), known_places, defaults, grid)
+    return _mission(read_table(path), str(path), known_places, defaults, grid, semantic_map)
 
 
 def parse_mission(
@@ -43,9 +46,10 @@ def parse_mission(
     known_places: Places = {},
     defaults: ErrandSettings = ErrandSettings(),
     grid: Optional[OccupancyGrid] = None,
+    semantic_map: Optional[SemanticMap] = None,
 ) -> Mission:
     """Parse the text of a mission file; see load_mission."""
-    return _mission(parse_table(text, TEXT_SOURCE), TEXT_SOURCE, known_places, defaults, grid)
+    return _mission(parse_table(text, TEXT_SOURCE), TEXT_SOURCE, known_places, defaults, grid, semantic_map)
 
 
 def _mission(
@@ -54,6 +58,7 @@ def _mission(
     known_places: Places,
     defaults: ErrandSettings,
     grid: Optional[OccupancyGrid],
+    semantic_map: Optional[SemanticMap],
 ) -> Mission:
     # ``faults`` are read by the simulator.
     errors = ErrorList()
@@ -65,8 +70,10 @@ def _mission(
     # The names of those that could not be read are known as well.
     place_names = {**known_places, **dict.fromkeys(_keys(table, "places"))}
     deliveries = errors.read(_deliveries, table, place_names, _keys(table, "objects")) or ()
+    mission = Mission(name, {**known_places, **places}, deliveries, objects, settings)
+    errors.read(_check_searches, table, mission, semantic_map)
     errors.raise_all()
-    return Mission(name, {**known_places, **places}, deliveries, objects, settings)
+    return mission
 
 
 def _keys(table: Table, key: str) -> List[str]:
@@ -143,10 +150,14 @@ def _deliveries(table: Table, places: Collection[str], objects: Collection[str])
 
 def _delivery(entry: Table, number: int, places: Collection[str], objects: Collection[str]) -> Delivery:
     errors = ErrorList()
-    errors.read(entry.allow_only, "name", "object", "from", "to", "after", "goal_timeout")
-    source = errors.read(_text_of, entry, "from", places, "place") or ""
-    destination = errors.read(_text_of, entry, "to", places, "place") or ""
-    object_name = errors.read(_text_of, entry, "object", objects, "object") or ""
+    is_find = "find" in entry
+    keys = ("find",) if is_find else ("object", "from", "to")
+    errors.read(entry.allow_only, "name", *keys, "after", "goal_timeout")
+    source, destination = (
+        errors.read(_text_of, entry, key, places, "place") or "" if needed else ""
+        for key, needed in (("from", not is_find and "from" in entry), ("to", not is_find))
+    )
+    object_name = errors.read(_text_of, entry, "find" if is_find else "object", objects, "object") or ""
     if source:
         errors.read(entry.check, source != destination, "to", f"another place than {source}")
     timeout = errors.read(entry.number, "goal_timeout") if "goal_timeout" in entry else None
@@ -154,6 +165,19 @@ def _delivery(entry: Table, number: int, places: Collection[str], objects: Colle
     errors.raise_all()
     name = entry.text("name", f"delivery {number}")
     return Delivery(name, object_name, source, destination, tuple(entry.texts("after")), timeout)
+
+
+def _check_searches(table: Table, mission: Mission, semantic_map: Optional[SemanticMap]) -> None:
+    """Refuse searches of objects that the semantic map does not list, and those that cannot be ordered."""
+    for delivery, entry in zip(mission.deliveries, table.tables("deliveries") if mission.deliveries else ()):
+        key = "object" if delivery.destination else "find"
+        if not delivery.source and mission.settings.order == "shortest":
+            raise entry.error_at(key, "has no from, which the order shortest needs")
+        if not mission.is_searched(delivery):
+            continue
+        problem = semantic_map.problem_with(delivery.object_name) if semantic_map is not None else ""
+        if problem:
+            raise entry.error_at(key, f"cannot be searched: {problem}")
 
 
 def _text_of(entry: Table, key: str, known: Collection[str], kind: str) -> str:
@@ -201,7 +225,7 @@ def _check_object_locations(deliveries: Sequence[Delivery], lines: Mapping[str, 
     left_at: Dict[str, Delivery] = {}
     for delivery in deliveries:
         last = left_at.get(delivery.object_name)
-        if last is not None and last.destination != delivery.source:
+        if last is not None and delivery.source and last.destination not in ("", delivery.source):
             where = f"{last.destination}, where {last.name} leaves {delivery.object_name}"
             lines[delivery.name].check(False, "from", where)
         left_at[delivery.object_name] = delivery

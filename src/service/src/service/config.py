@@ -51,6 +51,10 @@ class NodeSettings:
         "", "path of the YAML file with named places", required="the path of a YAML file of zones"
     )
     mission_file: str = parameter("", "YAML file of a mission whose deliveries are requested once; or empty")
+    semantic_map_file: str = parameter(
+        "",
+        "YAML of what is usually where, to search objects by (docs/how_to/find_objects.md); or empty",
+    )
     state_folder: str = parameter(
         "", "folder of the journal and of service.json", required="the path of a folder"
     )

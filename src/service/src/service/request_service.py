@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass, field
 from typing import Any, Dict, List, Mapping, Optional
 
+from pick_objects import SearchArea
 from planar import Pose2
 from planar.elapsed_time import ElapsedTime
 from planar.maps.places import NamedPlace
@@ -36,11 +37,13 @@ class Site:
         places: Places by name.
         model: Travel times, battery and dock.
         known: What requests may refer to.
+        area: Where objects can be searched; None if there is no semantic map.
     """
 
     places: Mapping[str, NamedPlace]
     model: PlanningModel
     known: Knowledge = field(default_factory=lambda: Knowledge(()))
+    area: Optional[SearchArea] = None
 
 
 class RequestService:
@@ -72,7 +75,7 @@ class RequestService:
     ):
         self._site, self._settings = site, settings
         self.book = TaskBook(snapshot)
-        self.executor = TaskExecutor(self.book, site.places, settings)
+        self.executor = TaskExecutor(self.book, site.places, settings, site.area)
         self.scheduler = QueueScheduler(self.book, site.places, site.model, settings, planner)
         self._repetitions = Repetitions(self.book, site.known.zone)
         self._admission = Admission(

@@ -111,6 +111,11 @@ class ObjectState:
     pose: Optional[Pose2] = None
     carried_by: str = ""
 
+    @property
+    def is_located(self) -> bool:
+        """Whether it is known where it is."""
+        return self.place is not None or self.pose is not None
+
 
 def task_to_json(task: ServiceTask) -> Dict[str, Any]:
     """Return a task as JSON values, with the names of Open-RMF's task state."""

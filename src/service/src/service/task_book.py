@@ -169,5 +169,6 @@ class TaskBook:
 
     def object_after_queue(self, name: str) -> Optional[str]:
         """Return the place of an object after all open tasks; None if no open task moves it."""
-        moves = [task for task in self.tasks.values() if task.request.object_name == name]
-        return moves[-1].request.description.destination if moves else None  # type: ignore[union-attr]
+        tasks = (task for task in self.tasks.values() if task.request.object_name == name)
+        ends = [getattr(task.request.description, "destination", None) for task in tasks]
+        return next((end for end in reversed(ends) if end is not None), None)

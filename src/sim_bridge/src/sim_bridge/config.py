@@ -62,6 +62,10 @@ class BridgeSettings(RunTimeSettings):
 
     world: str = parameter("", "SDF file of the world", required="the path of an SDF file")
     dock: str = parameter("", "pose of a dock in the world: x y yaw [m, rad]; empty: none but the world's")
+    objects_file: str = parameter(
+        "",
+        "YAML file of where objects are, for a detector (docs/how_to/find_objects.md); empty: none",
+    )
     seed: int = parameter(0, "seed of all noise", bounds=NOT_NEGATIVE)
     wait_for: str = parameter(
         "", "names of the nodes, separated by spaces, that are synchronised with the simulation"
@@ -131,7 +135,7 @@ class RobotSettings:
 
 
 # Parameters that are set by arguments of the launch file.
-ARGUMENTS = ("world", "dock", "seed", "speed", "wait_for", "static_publishers")
+ARGUMENTS = ("world", "dock", "objects_file", "seed", "speed", "wait_for", "static_publishers")
 _NOISE_VALUES = {each.name for each in parameters_of(NoiseSettings)}
 
 CONFIG_FILES = {

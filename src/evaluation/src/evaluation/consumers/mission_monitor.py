@@ -96,7 +96,9 @@ class MissionMonitor:
             event = self._pending.popleft()
             truth = self._truth_at(event.stamp)
             for state in event.deliveries:
-                self._deliveries.update(state.delivery, state.stage, state.attempts, state.reason, truth)
+                self._deliveries.update(
+                    state.delivery, state.stage, state.attempts, state.reason, truth, state.object_at
+                )
             self.record.reason, self.record.final_state = event.reason, event.state
             self._markers.flush()
             if event.state not in FINAL_STATES:

@@ -1,7 +1,7 @@
 """Messages as run events."""
 
 from functools import partial
-from typing import Any, Iterator, NamedTuple, Optional
+from typing import Any, Iterator, Mapping, NamedTuple, Optional, Tuple
 
 import numpy as np
 from rosgraph_msgs.msg import Log
@@ -139,7 +139,8 @@ def mission_request(message: Any, received: Reception) -> MissionRequested:
 
 
 def mission(message: Any, received: Reception) -> MissionUpdated:
-    deliveries = tuple(map(_delivery, message.deliveries))
+    objects = {each.name: (each.pose.position.x, each.pose.position.y) for each in message.objects}
+    deliveries = tuple(_delivery(each, objects) for each in message.deliveries)
     return MissionUpdated(
         message.header.stamp.to_sec(),
         message.state,
@@ -151,10 +152,11 @@ def mission(message: Any, received: Reception) -> MissionUpdated:
     )
 
 
-def _delivery(message: Any) -> DeliveryProgress:
+def _delivery(message: Any, objects: Mapping[str, Tuple[float, float]]) -> DeliveryProgress:
     named = message.delivery
     delivery = Delivery(named.name, named.object, named.source, named.destination)
-    return DeliveryProgress(delivery, DeliveryStage(message.state), message.attempts, message.reason)
+    stage, object_at = DeliveryStage(message.state), objects.get(named.object)
+    return DeliveryProgress(delivery, stage, message.attempts, message.reason, object_at)
 
 
 def state(message: Any, received: Reception) -> StateUpdated:

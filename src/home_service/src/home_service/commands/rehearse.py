@@ -66,7 +66,9 @@ class Rehearse(MissionOptions):
         stage = (home.world, home.robot, home.grid, home.mission)
         for seed in range(self.seed, self.seed + self.runs):
             parcel = None if self.mission else parcel_for(home.mission)
-            mission = HeadlessMission(*stage, seed=seed, parcel=parcel, conditions=conditions)
+            mission = HeadlessMission(
+                *stage, seed=seed, parcel=parcel, conditions=conditions, semantic_map=home.semantic_map
+            )
             run = mission.run(self.timeout)
             successes += run.verdict.success
             print(f"seed {seed}: {'SUCCESS' if run.verdict.success else 'FAILURE'}: {run.verdict.reason}")

@@ -14,6 +14,7 @@ from actionlib_msgs.msg import GoalStatus
 from home_service_msgs.msg import DeliverAction, DeliverGoal, DeliveryState
 
 from pick_objects.mission_file import TEXT_SOURCE
+from pick_objects.ros.mission_publisher import delivery_from_msg
 from planar_ros.calls.actions import goal_is_over, server_is_ready
 from planar_ros.node.runner import init_node
 from supervision.interruption import on_signals
@@ -91,10 +92,10 @@ def _follow(client, goal: DeliverGoal, name: str, interrupted: threading.Event, 
 
 def _print_result(state: DeliveryState) -> None:
     delivery = state.delivery
-    ends = {state.DELIVERED: "delivered", state.CANCELLED: "cancelled"}
-    reason = f" ({state.reason})" if state.reason and state.state == state.FAILED else ""
-    end = ends.get(state.state, "not delivered") + reason
-    print(f"{delivery.name}: {delivery.object} from {delivery.source} to {delivery.destination}: {end}")
+    done, missed = ("delivered", "not delivered") if delivery.destination else ("found", "not found")
+    ends = {state.DELIVERED: done, state.CANCELLED: "cancelled"}
+    reason = f" ({state.reason})" if state.reason and state.state != state.CANCELLED else ""
+    print(f"{delivery.name}: {delivery_from_msg(delivery)}: {ends.get(state.state, missed)}{reason}")
 
 
 def _wait_for_end(client, deadline: float) -> bool:

@@ -27,13 +27,15 @@ class MissionPublisher:
         self._state = rospy.Publisher("~state", String, queue_size=10, latch=True)
         self._mission_state = rospy.Publisher("~mission_state", msg.MissionState, queue_size=50, latch=True)
         self._published_state: Optional[ErrandState] = None
+        self._announced = ""
         self._published: tuple = ()
         self._dropped_at: Dict[str, Pose2] = {}
 
     def publish(self, errand: Errand) -> None:
         """Publish and log what has changed since the last call."""
         stages = tuple((job.delivery.name, job.stage) for job in errand.jobs)
-        news = (errand, errand.state, errand.attempt, stages, tuple(errand.object_locations.items()))
+        where = errand.place.name if errand.place else ""
+        news = (errand, errand.state, where, errand.attempt, stages, tuple(errand.object_locations.items()))
         if news == self._published:
             return
         self._published = news
@@ -41,9 +43,15 @@ class MissionPublisher:
         if errand.state is not self._published_state:
             self._published_state = errand.state
             self._state.publish(errand.state.value)
-            text = _announcement(errand)
-            if text:
-                rospy.loginfo("%s", text)
+            self._announced = ""
+        text = _announcement(errand)
+        if (
+            text
+            and text != self._announced
+            and (not self._announced or errand.state is ErrandState.SEARCHING)
+        ):
+            rospy.loginfo("%s", text)
+        self._announced = text
         self._mission_state.publish(self.message(errand))
 
     def flush(self) -> None:
@@ -110,11 +118,12 @@ def _announcement(errand: Errand) -> str:
     if job is None or place is None:
         return ""
     text = {
+        ErrandState.SEARCHING: f"searching {job.delivery.object_name}: driving to {place.name}",
         ErrandState.GOING_TO_PICKUP: f"driving to {place.name}",
         ErrandState.PICKING_UP: f"arrived at {place.name}, picking up",
         ErrandState.GOING_TO_DROPOFF: f"picked up, driving to {place.name}",
         ErrandState.SETTING_DOWN: f"arrived at {place.name}, setting down",
-        ErrandState.DELIVERED: f"arrived at {place.name}, delivered",
+        ErrandState.DELIVERED: job.reason or f"arrived at {place.name}, delivered",
         ErrandState.FAILED: "the mission has failed",
         ErrandState.CANCELLED: "the mission is cancelled",
     }.get(errand.state, errand.state.value)

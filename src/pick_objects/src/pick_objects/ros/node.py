@@ -17,9 +17,11 @@ from pick_objects.mission_file import load_mission, parse_mission
 from pick_objects.ros.deliver_server import DeliverServer
 from pick_objects.ros.mission_publisher import MissionPublisher, delivery_from_msg
 from pick_objects.ros.navigation_client import NavigationClient
+from pick_objects.search.area import SearchArea
 from planar import OccupancyGrid
 from planar.driving import FinishTask
 from planar.maps.places import NamedPlace, load_pickup_and_dropoff, load_places, unreachable_reason
+from planar.maps.semantic_map import load_semantic_map
 from planar_ros.lockstep import LockstepClient
 from planar_ros.messages.conversion import OccupancyGridArrays, grid_from_msg
 from planar_ros.messages.validation import subscribe
@@ -40,12 +42,15 @@ class PickObjectsNode:
         self._defaults = read_settings(ErrandSettings, ignore=NodeSettings.__dataclass_fields__)
         self._map: Optional[OccupancyGrid] = None
         self._zones = load_places(self._settings.zones_file)
+        path = self._settings.semantic_map_file
+        self._semantic_map = load_semantic_map(path) if path else None
+        self._area: Optional[SearchArea] = None
         self._mission = self._read_mission()
         rospy.set_param("~places", list(self._places))  # for user interfaces, in the order of the file
         self._errand: Optional[Errand] = None
         self._checkpoint = ParameterCheckpoint() if self._settings.resume else None
         self._lock = threading.Lock()
-        self._navigation = NavigationClient(self._settings.frame_id)
+        self._navigation = NavigationClient(self._settings.frame_id, detects=bool(path))
         self._topics = MissionPublisher(self._settings.frame_id, lambda: self._navigation.driver.base_in_map)
         subscribe("map", OccupancyGridArrays, self._keep_map, queue_size=1)
         rospy.Service("~add_delivery", AddDelivery, self._on_add)
@@ -83,7 +88,11 @@ class PickObjectsNode:
     def _read_mission(self) -> Optional[Mission]:
         settings = self._settings
         if settings.mission_file:
-            return load_mission(settings.mission_file, self._zones, self._defaults, self._map)
+            mission = load_mission(
+                settings.mission_file, self._zones, self._defaults, self._map, self._semantic_map
+            )
+            mission.check_searches(self._semantic_map)
+            return mission
         if settings.serve:
             return None
         return errand_mission(*load_pickup_and_dropoff(settings.zones_file), self._defaults)
@@ -99,7 +108,7 @@ class PickObjectsNode:
 
     def _carry_out_goal(self, mission: Mission, watch: Callable[[Errand], None]) -> FinishTask:
         """Carry out the mission of a goal, which has no checkpoint: it ends with its node."""
-        return self._carry_out(mission, Errand(mission), watch=watch)
+        return self._carry_out(mission, Errand(mission, self._area), watch=watch)
 
     def _carry_out(
         self,
@@ -116,6 +125,7 @@ class PickObjectsNode:
         driver = self._navigation.driver
         while not rospy.is_shutdown():
             with self._lock:
+                self._errand.base_in_map = driver.base_in_map
                 order = self._errand.advance(rospy.get_time(), event)
                 self._topics.publish(self._errand)
                 if checkpoint is not None:
@@ -136,13 +146,16 @@ class PickObjectsNode:
         The checkpoint stays after the mission's end, until the node's: a respawned node does not repeat it.
         """
         if self._checkpoint is None:
-            return Errand(mission)
-        return self._checkpoint.recovered(lambda record: resume_errand(mission, record)) or Errand(mission)
+            return Errand(mission, self._area)
+        resumed = self._checkpoint.recovered(lambda record: resume_errand(mission, record, self._area))
+        return resumed or Errand(mission, self._area)
 
     def _wait_until_ready(self) -> Optional[str]:
         settings = self._settings
         if not self._wait_for(lambda: self._map is not None, settings.map_timeout):
             rospy.logwarn("no map within %g s: the places are not checked", settings.map_timeout)
+        elif self._semantic_map is not None and self._semantic_map.furniture:
+            self._area = SearchArea(self._map, self._semantic_map)
         self._step.join(takes_turns=True)
         if not self._wait_for(lambda: not self._missing(), settings.server_timeout):
             return f"not ready after {settings.server_timeout:g} s: waiting for {', '.join(self._missing())}"
@@ -154,18 +167,23 @@ class PickObjectsNode:
         return [what for what, is_met in self._required.items() if not is_met()]
 
     def _unreachable_place(self, mission: Mission) -> Optional[str]:
-        names = dict.fromkeys(name for d in mission.deliveries for name in (d.source, d.destination))
+        names = dict.fromkeys(name for d in mission.deliveries for name in (d.source, d.destination) if name)
         problems: List[Optional[str]] = [
             unreachable_reason(mission.places[name], self._map) for name in names if self._map is not None
         ]
         return next((problem for problem in problems if problem), None)
 
     def _parse_goal(self, goal: DeliverGoal) -> Mission:
+        mission = self._mission_of_goal(goal)
+        mission.check_searches(self._semantic_map)
+        return mission
+
+    def _mission_of_goal(self, goal: DeliverGoal) -> Mission:
         places = self._places
         if goal.mission:
             if goal.deliveries:
                 raise MissionError("a goal holds either a mission or deliveries, not both")
-            return parse_mission(goal.mission, places, self._defaults, self._map)
+            return parse_mission(goal.mission, places, self._defaults, self._map, self._semantic_map)
         if not goal.deliveries:
             raise MissionError("the goal holds neither a mission nor deliveries")
         settings = ErrandSettings(

@@ -10,6 +10,7 @@ import yaml
 from planar.config.yaml_table import Table, read_table
 from planar.errors import SettingsError
 from planar.files.reading import is_file, read_bytes
+from planar.maps.semantic_map import OBJECTS, SEMANTIC_MAP
 
 MANIFEST, PLAN = "manifest.yaml", "plan.yaml"
 WORLD, MAP, IMAGE, ZONES, MISSION = "home.world", "home.yaml", "home.pgm", "zones.yaml", "mission.yaml"
@@ -33,6 +34,8 @@ class HomeFolder:
         zones: YAML file of its places.
         mission: Mission file; None if it has none.
         navigation_zones: YAML file of keep-out and speed zones; None if it has none.
+        semantic_map: YAML file of what is usually where; None if it has none.
+        objects: YAML file of where objects truly are; None if it has none.
     """
 
     folder: Path
@@ -41,6 +44,8 @@ class HomeFolder:
     zones: Path
     mission: Optional[Path]
     navigation_zones: Optional[Path]
+    semantic_map: Optional[Path] = None
+    objects: Optional[Path] = None
 
 
 def manifest_text(name: str, contents: Mapping[str, bytes]) -> str:
@@ -99,9 +104,9 @@ def load_home(folder: Path) -> HomeFolder:
     for part in FIXED:
         if present[part] != hashes[part]:
             raise SettingsError(f"{folder / part}: {_complaint(part)}; {_again(folder)}")
-    optional = {name: folder / name if name in hashes else None for name in (MISSION, NAVIGATION_ZONES)}
-    parts = (folder / WORLD, folder / MAP, folder / ZONES)
-    return HomeFolder(folder, *parts, optional[MISSION], optional[NAVIGATION_ZONES])
+    names = (MISSION, NAVIGATION_ZONES, SEMANTIC_MAP, OBJECTS)
+    optional = (folder / name if name in hashes else None for name in names)
+    return HomeFolder(folder, folder / WORLD, folder / MAP, folder / ZONES, *optional)
 
 
 def changed_files(folder: Path) -> Dict[str, bytes]:

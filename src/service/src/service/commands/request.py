@@ -11,7 +11,7 @@ from supervision.command_line import argument, option
 class Request:
     """Send a request to the running service, or show, cancel and follow requests.
 
-    Forms: deliver OBJECT from PLACE to PLACE; fetch OBJECT to PLACE; go PLACE;
+    Forms: deliver OBJECT from PLACE to PLACE; bring OBJECT to PLACE; find OBJECT; go PLACE;
     patrol PLACE PLACE ... [N times]; wait 5min [at PLACE]; dock. Without one, the open requests are listed.
 
     Exit code: 0 success, 1 a request that is followed has failed or was late, 2 invalid input or no service.

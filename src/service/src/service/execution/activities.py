@@ -1,10 +1,13 @@
 """What the robot is doing: driving, handling an object, standing, docking, undocking."""
 
 from dataclasses import dataclass
-from typing import Optional, Protocol, Union
+from typing import Callable, Optional, Protocol, Union
 
-from pick_objects import ErrandSettings, GoalFailed, GoalReached, RobotDisplaced
+from pick_objects import ErrandSettings, GoalFailed, GoalReached, LookTaken, RobotDisplaced
 from pick_objects.approach import PlaceApproach, PlaceReached, PlaceUnreachable
+from pick_objects.search import ObjectFound, ObjectNotFound, ObjectSearch, SearchExecution
+from pick_objects.search.execution import Outcome as SearchOutcome
+from planar import Pose2
 from planar.maps.places import NamedPlace
 from service.config import ServiceSettings
 from service.execution.robot import (
@@ -71,12 +74,8 @@ class Driving:
 
     def __init__(self, place: NamedPlace, settings: ServiceSettings):
         self.text = f"driving to {place.name}"
-        errand = ErrandSettings(
-            goal_timeout=settings.goal_timeout,
-            attempts=settings.attempts,
-            retry_seconds=settings.retry_seconds,
-        )
-        self._approach, self._poll = PlaceApproach(place, errand), settings.retry_seconds
+        self._approach = PlaceApproach(place, _errand_settings(settings))
+        self._poll = settings.retry_seconds
         self._now = 0.0
 
     @property
@@ -96,6 +95,67 @@ class Driving:
         if isinstance(answer, PlaceUnreachable):
             return ActivityFailed(answer.reason)
         return answer
+
+
+class Searching:
+    """Searches an object.
+
+    Args:
+        search: The search.
+        settings: Durations and patience.
+        locate: Returns the estimated pose of the robot in the map.
+
+    Attributes:
+        found: Where it was found; None before.
+    """
+
+    is_interruptible = True
+
+    def __init__(self, search: ObjectSearch, settings: ServiceSettings, locate: Callable[[], Pose2]):
+        self.text = f"searching {search.object_name}"
+        self.found: Optional[ObjectFound] = None
+        self._name, self._locate, self._poll = search.object_name, locate, settings.retry_seconds
+        self._execution = SearchExecution(search, _errand_settings(settings))
+        self._end: Optional[ActivityFailed] = None
+        self._now = 0.0
+
+    @property
+    def wakes_at(self) -> Optional[float]:
+        return self._now + max(self._poll, 1.0)
+
+    def start(self, now: float) -> Optional[RobotOrder]:
+        self._now = now
+        outcome = self._outcome(self._execution.start(now, self._locate()))
+        if isinstance(outcome, ActivityFailed):
+            self._end = outcome
+            return None
+        return outcome  # type: ignore[return-value]
+
+    def advance(self, now: float, event: Optional[RobotEvent]) -> Outcome:
+        self._now = now
+        if self._end is not None:
+            return self._end
+        is_of_search = isinstance(event, (GoalReached, GoalFailed, LookTaken))
+        news = event if is_of_search else None
+        return self._outcome(self._execution.advance(now, news, self._locate()))  # type: ignore[arg-type]
+
+    def _outcome(self, outcome: SearchOutcome) -> Outcome:
+        if isinstance(outcome, ObjectNotFound):
+            return ActivityFailed(outcome.reason)
+        if isinstance(outcome, ObjectFound):
+            self.found = outcome
+            return ActivityDone()
+        if self._execution.approach is not None:
+            self.text = f"searching {self._name}: {self._execution.approach.place.name}"
+        return outcome
+
+
+def _errand_settings(settings: ServiceSettings) -> ErrandSettings:
+    return ErrandSettings(
+        goal_timeout=settings.goal_timeout,
+        attempts=settings.attempts,
+        retry_seconds=settings.retry_seconds,
+    )
 
 
 class Standing:

@@ -2,7 +2,8 @@
 
 from typing import Dict, Mapping, Optional
 
-from pick_objects import DriveToPlace
+from pick_objects import DriveToPlace, SearchArea
+from pick_objects.search import ObjectFound, ObjectSearch
 from planar import Pose2
 from planar.maps.places import NamedPlace
 from service.config import ServiceSettings
@@ -14,12 +15,23 @@ from service.execution.activities import (
     DockingActivity,
     Driving,
     Outcome,
+    Searching,
     Standing,
     UndockingActivity,
 )
 from service.execution.robot import RobotEvent, RobotInputs, RobotOrder, StopRobot
 from service.requests.request import Deliver
-from service.requests.steps import DRIVES, Drive, DriveToObject, EnterDock, Pause, PickUp, SetDown, Step
+from service.requests.steps import (
+    DRIVES,
+    Drive,
+    DriveToObject,
+    EnterDock,
+    FindObject,
+    Pause,
+    PickUp,
+    SetDown,
+    Step,
+)
 from service.task import ObjectState, ServiceTask, TaskStatus
 from service.task_book import TaskBook
 
@@ -31,14 +43,21 @@ class TaskExecutor:
         book: Tasks and objects, updated in place.
         places: Places by name.
         settings: Durations and patience.
+        area: Where objects can be searched; None if there is no semantic map.
 
     Attributes:
         current: Id of the task under way; empty if there is none.
         activity: What the robot does; None if it stands idle.
     """
 
-    def __init__(self, book: TaskBook, places: Mapping[str, NamedPlace], settings: ServiceSettings):
-        self._book, self._places, self._settings = book, places, settings
+    def __init__(
+        self,
+        book: TaskBook,
+        places: Mapping[str, NamedPlace],
+        settings: ServiceSettings,
+        area: Optional[SearchArea] = None,
+    ):
+        self._book, self._places, self._settings, self._area = book, places, settings, area
         self.current = ""
         self.activity: Optional[Activity] = None
         self._is_returning, self._displacements = False, 0
@@ -123,10 +142,19 @@ class TaskExecutor:
             self._book.log(now, "robot", "is in the dock")
             self.activity = None
             return None
+        if isinstance(activity, Searching) and activity.found is not None:
+            self._note_found(now, activity.found)
+            return self._begin_step(now, elapsed, may_return=False)
         if self._is_returning:
             return self._begin_step(now, elapsed, may_return=False)
         self._complete_step(now)
         return self._begin_step(now, elapsed, may_return=False)
+
+    def _note_found(self, now: float, found: ObjectFound) -> None:
+        """Note where an object is, and from where it can be picked up."""
+        name = found.place.name
+        self._book.put_object(name, ObjectState(found.furniture or None, found.place.pose))
+        self._book.log(now, "step", f"{name} is {found.where}", self.current)
 
     def _on_failed(self, now: float, reason: str) -> Optional[RobotOrder]:
         if self.current:
@@ -152,7 +180,10 @@ class TaskExecutor:
             self._stop_task()
             return None
         step = steps[task.step]
-        problem = self._problem_of(task, step)
+        if isinstance(step, FindObject) and self._is_located(step.object_name):
+            self._complete_step(now)
+            return self._begin_step(now, elapsed, may_return=False)
+        problem = problem_of(task, step, self._book.objects, self._area)
         if problem:
             return self._on_failed(now, problem)
         self._is_returning = may_return and not isinstance(step, DRIVES)
@@ -174,6 +205,10 @@ class TaskExecutor:
         settings = self._settings
         if isinstance(step, Drive):
             return Driving(self._places[step.place], settings)
+        if isinstance(step, (FindObject, DriveToObject)) and not self._is_located(step.object_name):
+            assert self._area is not None  # see problem_of
+            search = ObjectSearch(self._area, step.object_name)
+            return Searching(search, settings, lambda: self._robot.pose)
         if isinstance(step, DriveToObject):
             return Driving(self.place_of(step.object_name), settings)
         if isinstance(step, PickUp):
@@ -191,21 +226,8 @@ class TaskExecutor:
         left = min(step.seconds, max(0.0, since + step.seconds - now))
         return Standing("waiting", left, is_interruptible=True)
 
-    def _problem_of(self, task: ServiceTask, step: Step) -> str:
-        """Return why a step cannot be done; empty if it can."""
-        description = task.request.description
-        name = task.request.object_name
-        if not name or task.is_carrying:
-            return ""
-        state = self._book.objects.get(name)
-        source = getattr(description, "source", None)
-        if state is None or (state.place is None and state.pose is None):
-            return f"it is not known where {name} is"
-        if state.carried_by and state.carried_by != task.id:
-            return f"{name} is on the robot for task {state.carried_by}"
-        if source is not None and state.place != source:
-            return f"{name} is not at {source}" + (f" but at {state.place}" if state.place else "")
-        return ""
+    def _is_located(self, name: str) -> bool:
+        return name in self._book.objects and self._book.objects[name].is_located
 
     def place_of(self, object_name: str) -> NamedPlace:
         """Return where to pick up an object: its place, or the pose at which the robot left it."""
@@ -246,8 +268,36 @@ class TaskExecutor:
         return StopRobot() if was_active else None
 
 
+def problem_of(
+    task: ServiceTask, step: Step, objects: Mapping[str, ObjectState], area: Optional[SearchArea]
+) -> str:
+    """Return why a step cannot be done, as a sentence; empty if it can.
+
+    Args:
+        task: Task of the step.
+        step: The step.
+        objects: Where objects are known to be.
+        area: Where objects can be searched; None if there is no semantic map.
+    """
+    name = task.request.object_name
+    if not name or task.is_carrying:
+        return ""
+    state = objects.get(name)
+    source = getattr(task.request.description, "source", None)
+    if state is None or not state.is_located:
+        if area is None or not isinstance(step, (FindObject, DriveToObject)):
+            return f"it is not known where {name} is"
+        return area.semantic_map.problem_with(name)
+    if state.carried_by and state.carried_by != task.id:
+        return f"{name} is on the robot for task {state.carried_by}"
+    if source is not None and state.place != source:
+        return f"{name} is not at {source}" + (f" but at {state.place}" if state.place else "")
+    return ""
+
+
 TEXTS: Dict[type, str] = {
     Drive: "at {place}",
+    FindObject: "{object_name} found",
     DriveToObject: "at {object_name}",
     PickUp: "{object_name} picked up",
     SetDown: "{object_name} set down at {place}",

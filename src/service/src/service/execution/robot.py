@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Optional, Union
 
-from pick_objects import DriveToPlace, GoalFailed, GoalReached, RobotDisplaced
+from pick_objects import DriveToPlace, GoalFailed, GoalReached, LookForObject, LookTaken, RobotDisplaced
 from planar import Pose2
 
 
@@ -58,5 +58,7 @@ class RobotInputs:
     is_docked: bool = False
 
 
-RobotOrder = Union[DriveToPlace, DockRobot, UndockRobot, StopRobot]
-RobotEvent = Union[GoalReached, GoalFailed, RobotDisplaced, RobotDocked, RobotUndocked, DockingFailed]
+RobotOrder = Union[DriveToPlace, LookForObject, DockRobot, UndockRobot, StopRobot]
+RobotEvent = Union[
+    GoalReached, GoalFailed, RobotDisplaced, LookTaken, RobotDocked, RobotUndocked, DockingFailed
+]

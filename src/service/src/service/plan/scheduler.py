@@ -2,6 +2,7 @@
 
 from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 
+from pick_objects.driving_time import SEARCH_SECONDS
 from planar import Pose2
 from planar.maps.places import NamedPlace
 from service.config import ServiceSettings
@@ -9,7 +10,7 @@ from service.execution.robot import RobotInputs
 from service.plan.job import CHARGE, PlannedJob, PlanStart, QueuePlan, Stop
 from service.plan.planner import DeadlinePlanner, Planner
 from service.plan.rollout import PlanningModel, roll_out
-from service.requests.steps import Drive, DriveToObject, EnterDock, Pause, PickUp, SetDown, Step
+from service.requests.steps import Drive, DriveToObject, EnterDock, FindObject, Pause, PickUp, SetDown, Step
 from service.task import ServiceTask
 from service.task_book import TaskBook
 
@@ -159,4 +160,10 @@ class QueueScheduler:
             return self._settings.pickup_seconds
         if isinstance(step, SetDown):
             return self._settings.dropoff_seconds
+        if isinstance(step, (FindObject, DriveToObject)) and self._is_searched(step.object_name):
+            return SEARCH_SECONDS
         return step.seconds if isinstance(step, Pause) else 0.0
+
+    def _is_searched(self, name: str) -> bool:
+        state = self._book.objects.get(name)
+        return self._book.object_after_queue(name) is None and (state is None or not state.is_located)

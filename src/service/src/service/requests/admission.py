@@ -7,7 +7,7 @@ from planar.maps.places import NamedPlace
 from service.errors import QueueFullError, RequestError, TaskEndedError, UnknownTaskError
 from service.requests.parser import Knowledge, parse_request
 from service.requests.repetitions import Repetitions
-from service.requests.request import Deliver, Fetch
+from service.requests.request import Deliver, Fetch, Find
 from service.task import ObjectState, Series, ServiceTask, TaskStatus
 from service.task_book import TaskBook
 
@@ -128,15 +128,21 @@ class Admission:
             raise RequestError(
                 [f"description: from: an open request takes {name} to {left_at}; expected from {left_at}"]
             )
+        self._check_search(description, name, left_at)
         if isinstance(description, Fetch):
             state = self._book.objects.get(name)
             where = left_at or (state.place if state else None)
-            if left_at is None and (state is None or (state.place is None and state.pose is None)):
-                raise RequestError(
-                    [f"description: it is not known where {name} is; use deliver {name} from PLACE to PLACE"]
-                )
             if where == description.destination:
                 raise RequestError([f"description: to: {name} is at {where} already"])
+
+    def _check_search(self, description: Any, name: str, left_at: Optional[str]) -> None:
+        """Refuse to search what cannot be searched; what is known to be somewhere is not searched."""
+        state = self._book.objects.get(name)
+        is_known = left_at is not None or (state is not None and state.is_located)
+        if isinstance(description, (Fetch, Find)) and not is_known:
+            problem = self._known.problem_with_search(name)
+            if problem:
+                raise RequestError([f"description: object: {problem}"])
 
     def _trust(self, description: Deliver) -> None:
         """Note where the object is according to the request, unless an open request moves it."""

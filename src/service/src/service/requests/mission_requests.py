@@ -20,11 +20,13 @@ def documents_of(mission: Mission, prefix: str) -> List[Dict[str, Any]]:
         delivery = next(each for each in waiting if done.issuperset(each.after))
         waiting.remove(delivery)
         done.add(delivery.name)
-        description = {"object": delivery.object_name, "from": delivery.source, "to": delivery.destination}
+        values = {"object": delivery.object_name, "from": delivery.source, "to": delivery.destination}
+        description = {name: value for name, value in values.items() if value}
+        unsourced = "fetch" if delivery.destination else "find"
         documents.append(
             {
                 "id": ids[delivery.name],
-                "category": "deliver",
+                "category": "deliver" if delivery.source else unsourced,
                 "description": description,
                 "requester": mission.name[:200],
                 "labels": [delivery.name[:200]],

@@ -6,6 +6,7 @@ from datetime import tzinfo
 from typing import Any, Callable, Collection, Dict, List, Mapping, Optional
 
 from planar.config.hints import hint, hint_or_choices
+from planar.maps.semantic_map import SemanticMap
 from service.errors import RequestError
 from service.requests.calendar_times import clock_text, next_repetition, parse_time
 from service.requests.request import DESCRIPTIONS, JSON_NAMES, TaskRequest, from_millis
@@ -30,12 +31,23 @@ class Knowledge:
     Attributes:
         places: Names of places.
         has_dock: Whether there is a dock.
+        semantic_map: What is usually where, to search objects by; None if nothing can be searched.
         zone: Time zone; None for that of the machine.
     """
 
     places: Collection[str]
     has_dock: bool = False
     zone: Optional[tzinfo] = None
+    semantic_map: Optional[SemanticMap] = None
+
+    def problem_with_search(self, object_name: str) -> str:
+        """Return why an object cannot be searched, as a sentence; empty if it can."""
+        if self.semantic_map is not None:
+            return self.semantic_map.problem_with(object_name)
+        return (
+            f"it is not known where {object_name} is, and there is no semantic map to search it by; use "
+            f"deliver {object_name} from PLACE to PLACE, or start the service with --home FOLDER"
+        )
 
 
 @dataclass

@@ -7,7 +7,7 @@ requester, labels, unix_millis_earliest_start_time. A deadline and repetition ar
 from dataclasses import asdict, dataclass
 from typing import Any, ClassVar, Dict, Mapping, Optional, Tuple, Type, Union
 
-from service.requests.steps import Drive, DriveToObject, EnterDock, Pause, PickUp, SetDown, Step
+from service.requests.steps import Drive, DriveToObject, EnterDock, FindObject, Pause, PickUp, SetDown, Step
 
 # Names of fields in JSON where they differ from the attributes.
 JSON_NAMES = {"object_name": "object", "source": "from", "destination": "to"}
@@ -29,7 +29,7 @@ class Deliver:
 
 @dataclass(frozen=True)
 class Fetch:
-    """Carry an object to a place, from where it is known to be."""
+    """Carry an object to a place, from where it is known to be, or is found."""
 
     category: ClassVar[str] = "fetch"
     object_name: str
@@ -38,6 +38,17 @@ class Fetch:
     def steps(self) -> Tuple[Step, ...]:
         name = self.object_name
         return DriveToObject(name), PickUp(name), Drive(self.destination), SetDown(name, self.destination)
+
+
+@dataclass(frozen=True)
+class Find:
+    """Find out where an object is."""
+
+    category: ClassVar[str] = "find"
+    object_name: str
+
+    def steps(self) -> Tuple[Step, ...]:
+        return (FindObject(self.object_name),)
 
 
 @dataclass(frozen=True)
@@ -90,9 +101,9 @@ class GoToDock:
         return (EnterDock(),)
 
 
-Description = Union[Deliver, Fetch, Go, Patrol, Wait, GoToDock]
+Description = Union[Deliver, Fetch, Find, Go, Patrol, Wait, GoToDock]
 DESCRIPTIONS: Mapping[str, Type[Any]] = {
-    kind.category: kind for kind in (Deliver, Fetch, Go, Patrol, Wait, GoToDock)
+    kind.category: kind for kind in (Deliver, Fetch, Find, Go, Patrol, Wait, GoToDock)
 }
 
 
@@ -124,7 +135,7 @@ class TaskRequest:
 
     @property
     def object_name(self) -> str:
-        """Object that it moves; empty if it moves none."""
+        """Object that it moves or finds; empty if there is none."""
         return getattr(self.description, "object_name", "")
 
     @property

@@ -12,8 +12,15 @@ class Drive:
 
 
 @dataclass(frozen=True)
+class FindObject:
+    """Find out where an object is."""
+
+    object_name: str
+
+
+@dataclass(frozen=True)
 class DriveToObject:
-    """Drive to where an object is known to be."""
+    """Drive to where an object is known to be; one of which that is not known is searched."""
 
     object_name: str
 
@@ -45,5 +52,5 @@ class EnterDock:
     """Drive into the dock."""
 
 
-Step = Union[Drive, DriveToObject, PickUp, SetDown, Pause, EnterDock]
+Step = Union[Drive, FindObject, DriveToObject, PickUp, SetDown, Pause, EnterDock]
 DRIVES = (Drive, DriveToObject)

@@ -8,13 +8,18 @@ from service.errors import RequestError
 from service.requests.calendar_times import parse_duration
 
 FORMS: Dict[str, Tuple[str, "re.Pattern[str]"]] = {
-    "deliver": ("deliver OBJECT from PLACE to PLACE", re.compile(r"(\S+) from (\S+) to (\S+)")),
-    "fetch": ("fetch OBJECT to PLACE", re.compile(r"(\S+) to (\S+)")),
-    "go": ("go PLACE", re.compile(r"(?:to )?(\S+)")),
+    "deliver": ("deliver OBJECT from PLACE to PLACE", re.compile(r"(.+?) from (.+?) to (.+)")),
+    "fetch": ("fetch OBJECT to PLACE", re.compile(r"(.+?) to (.+)")),
+    "bring": ("bring OBJECT to PLACE", re.compile(r"(.+?) to (.+)")),
+    "find": ("find OBJECT", re.compile(r"(.+)")),
+    "go": ("go PLACE", re.compile(r"(?:to )?(.+)")),
     "patrol": ("patrol PLACE PLACE ... [N times]", re.compile(r"(.+?)(?: (\d+) (?:times|rounds))?")),
-    "wait": ("wait 5min [at PLACE]", re.compile(r"(.+?)(?: at (\S+))?")),
+    "wait": ("wait 5min [at PLACE]", re.compile(r"(.+?)(?: at (.+))?")),
     "dock": ("dock", re.compile(r"")),
 }
+
+# Verbs for categories that have other names.
+SYNONYMS = {"bring": "fetch"}
 
 
 def _patrol(places: str, rounds: str) -> Dict[str, Any]:
@@ -29,6 +34,7 @@ def _wait(duration: str, place: str) -> Dict[str, Any]:
 DESCRIBE: Dict[str, Callable[..., Dict[str, Any]]] = {
     "deliver": lambda name, source, to: {"object": name, "from": source, "to": to},
     "fetch": lambda name, to: {"object": name, "to": to},
+    "find": lambda name: {"object": name},
     "go": lambda place: {"place": place},
     "patrol": _patrol,
     "wait": _wait,
@@ -50,4 +56,5 @@ def parse_text(text: str) -> Dict[str, Any]:
     match = pattern.fullmatch(" ".join(words[1:]))
     if match is None:
         raise RequestError([f"text: '{' '.join(words)[:200]}' is incomplete; expected: {usage}"])
-    return {"category": verb, "description": DESCRIBE[verb](*match.groups())}
+    category = SYNONYMS.get(verb, verb)
+    return {"category": category, "description": DESCRIBE[category](*match.groups())}

@@ -121,8 +121,9 @@ def _log_refusal(answer: Any) -> None:
 
 def _document(message: Any) -> Dict[str, Any]:
     values = {"object": message.object, "from": message.source, "to": message.destination}
-    category = "deliver" if message.source else "fetch"
-    description = {name: value for name, value in values.items() if value or name != "from"}
+    unsourced = "fetch" if message.destination else "find"
+    category = "deliver" if message.source else unsourced
+    description = {name: value for name, value in values.items() if value}
     if not message.object:
         raise RequestError(["object: no object is named"])
     return {"category": category, "description": description, "requester": "ros", "labels": [message.name]}

@@ -9,10 +9,11 @@ from typing import Callable, Dict, List, Optional, Tuple
 
 import rospy
 
-from pick_objects import Mission, load_mission
+from pick_objects import Mission, SearchArea, load_mission
 from planar import OccupancyGrid, Pose2
 from planar.geometry.pose import pose_of_text
 from planar.maps.places import load_places, obstruction_at, unreachable_reason
+from planar.maps.semantic_map import load_semantic_map
 from planar_ros.lockstep import LockstepClient
 from planar_ros.messages.conversion import OccupancyGridArrays, grid_from_msg
 from planar_ros.messages.validation import subscribe
@@ -46,6 +47,8 @@ class ServiceNode:
     def __init__(self) -> None:
         self._step = LockstepClient.of_node()
         self._settings, self._service_settings, self._energy = _settings()
+        path = self._settings.semantic_map_file
+        self._semantic_map = load_semantic_map(path) if path else None
         self._mission, self._documents = self._read_mission()
         self._map: Optional[OccupancyGrid] = None
         subscribe("map", OccupancyGridArrays, self._keep_map, queue_size=1)
@@ -60,7 +63,9 @@ class ServiceNode:
         self._host = ServiceHost(folder / JOURNAL_FILE, self._make, rospy.logwarn)
         assert self._host.journal is not None
         snapshot = self._host.journal.restore()
-        self._robot = RobotClient(self._settings.frame_id, snapshot.robot.pose if snapshot.robot else Pose2())
+        self._robot = RobotClient(
+            self._settings.frame_id, snapshot.robot.pose if snapshot.robot else Pose2(), bool(path)
+        )
         self._origin = _origin(snapshot.latest)
         self._topics = MissionTopics(self._settings.frame_id, self._mission)
         self._requests = RosRequests(self._host, self._mission, self._topics)
@@ -106,8 +111,12 @@ class ServiceNode:
         assert self._map is not None
         travel, staging = GridTravelTimes(self._map, self._settings.speed), self._staging
         around = PlanningModel(travel, self._energy, staging)
-        known = Knowledge(tuple(self._mission.places), staging is not None)
-        site = Site(self._mission.places, around, known)
+        semantic_map = self._semantic_map
+        known = Knowledge(tuple(self._mission.places), staging is not None, semantic_map=semantic_map)
+        area = None
+        if semantic_map is not None and semantic_map.furniture:
+            area = SearchArea(self._map, semantic_map)
+        site = Site(self._mission.places, around, known, area)
         return RequestService(site, self._service_settings, journal.restore(), find_ended=journal.ended_task)
 
     def _read_mission(self) -> Tuple[Mission, List[Dict[str, object]]]:
@@ -115,7 +124,7 @@ class ServiceNode:
         path = self._settings.mission_file
         if not path:
             return Mission("service", zones, ()), []
-        mission = load_mission(path, zones)
+        mission = load_mission(path, zones, semantic_map=self._semantic_map)
         digest = hashlib.sha256(Path(path).read_bytes()).hexdigest()[:12]
         return mission, documents_of(mission, f"mission-{digest}")
 

@@ -7,7 +7,7 @@ import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from sensor_msgs.msg import BatteryState
 
-from pick_objects import DriveToPlace
+from pick_objects import DriveToPlace, LookForObject
 from pick_objects.ros.navigation_client import NavigationClient
 from planar import Pose2
 from planar_ros.messages.conversion import pose2_from_msg
@@ -24,13 +24,14 @@ class RobotClient:
     Args:
         frame_id: Frame of the places.
         pose: Pose until the first estimate.
+        detects: Whether objects are searched.
 
     Attributes:
         navigation: Client of move_base.
     """
 
-    def __init__(self, frame_id: str, pose: Pose2):
-        self.navigation = NavigationClient(frame_id)
+    def __init__(self, frame_id: str, pose: Pose2, detects: bool = False):
+        self.navigation = NavigationClient(frame_id, detects)
         self._docking, self._pose = DockingClient(), pose
         self._fed_back: Optional[Pose2] = None
         self._charge: Optional[float] = None
@@ -54,7 +55,7 @@ class RobotClient:
         if order is None:
             return
         self._docking.cancel()
-        if isinstance(order, DriveToPlace):
+        if isinstance(order, (DriveToPlace, LookForObject)):
             self.navigation.driver.carry_out(order)
             return
         self.navigation.driver.discard_order()

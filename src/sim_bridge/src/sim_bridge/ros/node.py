@@ -11,6 +11,7 @@ from visualization_msgs.msg import Marker
 from planar import PlanarError, Pose2
 from planar.config.settings import check
 from planar.geometry.pose import pose_of_text
+from planar.maps.semantic_map import load_objects
 from planar_ros.lockstep import transport
 from planar_ros.lockstep.transport import LockstepConnection
 from planar_ros.messages.conversion import pose2_from_msg
@@ -37,6 +38,7 @@ from sim_bridge.ros.timing.paced_nodes import PacedNodes
 from sim_bridge.ros.timing.time_control import TimeControl
 from sim_bridge.scene import Scene
 from sim_bridge.sdf import load_world
+from sim_bridge.sensors.object_detector import with_object_detector
 from sim_bridge.simulation import ROBOT_NAME, box_on_floor
 from sim_bridge.views.section import warm_up
 from sim_bridge.world import World
@@ -68,7 +70,7 @@ class Bridge:
         world = world_of(settings)
         if settings.dock:
             world = with_dock(world, pose_of_text(settings.dock, "~dock"))
-        robots = _robots_of(world, robot)
+        robots = _robots_of(world, robot, settings.objects_file)
         profiles = (profile for _, profile, *_ in robots)
         warnings = [*world.warnings, *chain(*(each.warnings for each in profiles))]
         report_without_effect([], warnings, settings.strict, WorldError, "strict")
@@ -145,12 +147,19 @@ def _robots_from_parameters(robot: RobotSettings) -> Dict[str, RobotSettings]:
     return {ROBOT_NAME: robot} if robot.robot else {}
 
 
-def _robots_of(world: World, robot: RobotSettings) -> List[Tuple[str, RobotProfile, Pose2, float, str]]:
-    """Return name, profile, start, height and namespace of the robots of the parameters and of a world."""
+def _robots_of(
+    world: World, robot: RobotSettings, objects_file: str
+) -> List[Tuple[str, RobotProfile, Pose2, float, str]]:
+    """Return name, profile, start, height and namespace of the robots of the parameters and of a world.
+
+    With a file of objects, those of the parameters have a detector.
+    """
+    objects = load_objects(objects_file) if objects_file else ()
     robots = []
     for name, each in _robots_from_parameters(robot).items():
         start = Pose2(each.x, each.y, each.yaw)
-        robots.append((name, robot_named(each.robot, find_file), start, 0.0, each.namespace))
+        profile = with_object_detector(robot_named(each.robot, find_file), objects)
+        robots.append((name, profile, start, 0.0, each.namespace))
     for model in world.robots:
         profile, pose = read_sdf_robot(model)
         robots.append((model.name, profile, to_pose2(pose), float(pose[2, 3]), ""))

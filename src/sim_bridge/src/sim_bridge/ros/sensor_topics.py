@@ -3,6 +3,7 @@
 from typing import Any, Callable, Dict, List, Protocol, Tuple
 
 import rospy
+from home_service_msgs.msg import DetectedObjects
 from kobuki_msgs.msg import DockInfraRed
 from sensor_msgs.msg import Imu
 
@@ -12,12 +13,13 @@ from sim_bridge.robot import Robot, StepResult
 from sim_bridge.ros.camera_topics import CameraTopics
 from sim_bridge.ros.kobuki.topics import KobukiTopics
 from sim_bridge.ros.publishers import RobotPublishers
-from sim_bridge.ros.sensor_messages import dock_ir_to_msg, imu_to_msg, scan_to_msg
+from sim_bridge.ros.sensor_messages import detections_to_msg, dock_ir_to_msg, imu_to_msg, scan_to_msg
 from sim_bridge.sensors.camera import CameraProfile
 from sim_bridge.sensors.dock_ir import DockIrProfile
 from sim_bridge.sensors.imu import ImuProfile
 from sim_bridge.sensors.kobuki import KobukiProfile
 from sim_bridge.sensors.lidar import LaserProfile
+from sim_bridge.sensors.object_detector import ObjectDetectorProfile
 
 
 class SensorTopics(Protocol):
@@ -94,6 +96,7 @@ TOPICS: Dict[type, Callable[[Any, RobotPublishers], SensorTopics]] = {
     CameraProfile: CameraTopics,
     ImuProfile: one_topic(Imu, imu_to_msg, queue_size=100),
     KobukiProfile: KobukiTopics,
+    ObjectDetectorProfile: one_topic(DetectedObjects, detections_to_msg),
     DockIrProfile: one_topic(DockInfraRed, dock_ir_to_msg),
 }
 

@@ -244,7 +244,7 @@ class Mounting:
 
         Args:
             stream: Number of the kind of sensor, at least 100 from the others. In use are 0 (odometry),
-                1 (range finders), 100 (cameras) and 200 (inertial sensors).
+                1 (range finders), 100 (cameras), 200 (inertial sensors) and 300 (object detectors).
         """
         robot = [] if self.robot == 0 and stream < FIRST_OTHER_STREAM else [self.robot]
         return self.streams.make([self.seed, *robot, stream + self.number])
