@@ -76,14 +76,14 @@ class Orders:
         self.left -= tops
 
 
-def is_hidden(x, y, points_xy, solids):
-    """Return whether walls or tall furniture hide (x, y) from each point (N, 2): slabs of rectangles.
+def is_hidden(at, points_xy, solids):
+    """Return whether walls or tall furniture hide a point (x, y) from each point (N, 2): slabs of rectangles.
 
     Shelves are open: a piece hides nothing of what stands in it.
     """
-    holds = ((solids[:, :2] <= (x, y)) & (solids[:, 2:] >= (x, y))).all(axis=1)
+    holds = ((solids[:, :2] <= at) & (solids[:, 2:] >= at)).all(axis=1)
     solids = solids[~holds]
-    directions = np.array([x, y]) - points_xy
+    directions = np.array(at) - points_xy
     with np.errstate(divide="ignore", invalid="ignore"):
         low = (solids[None, :, :2] - points_xy[:, None]) / directions[:, None]
         high = (solids[None, :, 2:] - points_xy[:, None]) / directions[:, None]
@@ -97,7 +97,7 @@ def true_probability(view, at, solids):
     """Return the probability that a look from a pose detects an object."""
     offset = view.inverse() @ Pose2(*at)
     reach, bearing = np.hypot(offset.x, offset.y), np.arctan2(offset.y, offset.x)
-    if is_hidden(*at, np.array([[view.x, view.y]]), solids)[0]:
+    if is_hidden(at, np.array([[view.x, view.y]]), solids)[0]:
         return 0.0
     return float(MODEL.probability_at(np.array(reach), np.array(bearing)))
 
@@ -109,7 +109,7 @@ def shortest_path(home, at, paths, lengths):
     points = home.grid.points_of(cells * step)
     ranges = np.hypot(*(points - at).T)
     good = MODEL.probability_at(ranges, np.zeros(len(ranges))) >= MODEL.probability / 2.0
-    good[good] &= ~is_hidden(*at, points[good], home.solids)
+    good[good] &= ~is_hidden(at, points[good], home.solids)
     numbers = cells[good] @ (paths.is_open.shape[1], 1)
     return float(lengths[numbers].min(initial=np.inf))
 

@@ -1,7 +1,7 @@
 """Generated homes with kinds of rooms and furniture, for the search of objects."""
 
 import math
-from typing import NamedTuple, Tuple
+from typing import Dict, NamedTuple, Tuple
 
 import numpy as np
 
@@ -55,7 +55,9 @@ def furnished_home(seed: int) -> FurnishedHome:
     kinds = [ROOM_KINDS[number % len(ROOM_KINDS)] for number in range(len(floor.rooms))]
     rng.shuffle(kinds)
     furniture = Furniture(outline, floor.solids, start)
-    rooms, tops, tall = {}, {}, list(floor.solids)
+    rooms: Dict[str, str] = {}
+    tops: Dict[str, FurnitureTop] = {}
+    tall = list(floor.solids)
     for number, (room, kind) in enumerate(zip(floor.rooms, kinds), 1):
         rooms[f"{kind} {number}"] = kind
         for piece in FURNITURE[kind]:

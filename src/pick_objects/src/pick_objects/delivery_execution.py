@@ -132,7 +132,7 @@ class DeliveryExecution:
 
     def _place_of(self, name: str, location: ObjectLocation) -> NamedPlace:
         """Return where to pick up an object whose location is known."""
-        if location.place in self._mission.places:
+        if location.place is not None and location.place in self._mission.places:
             return self._mission.places[location.place]
         where = location.pose
         pose = self._area.pose_near(where.x, where.y, self.base_in_map) if self._area else None

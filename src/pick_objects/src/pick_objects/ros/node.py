@@ -154,7 +154,7 @@ class PickObjectsNode:
         settings = self._settings
         if not self._wait_for(lambda: self._map is not None, settings.map_timeout):
             rospy.logwarn("no map within %g s: the places are not checked", settings.map_timeout)
-        elif self._semantic_map is not None and self._semantic_map.furniture:
+        elif self._map is not None and self._semantic_map is not None and self._semantic_map.furniture:
             self._area = SearchArea(self._map, self._semantic_map)
         self._step.join(takes_turns=True)
         if not self._wait_for(lambda: not self._missing(), settings.server_timeout):
