@@ -35,8 +35,10 @@ from sim_bridge.simulation import ROBOT_NAME
 
 NEAREST, FARTHEST, ANGLE = 0.5, 2.4, math.radians(58.0)
 SECONDS = 240.0
-STATES = ("IDLE", "DONE", "DOCKED_IN", "BUMPED_DOCK", "BUMPED", "SCAN", "FIND_STREAM", "GET_STREAM")
-STATES += ("ALIGNED", "ALIGNED_FAR", "ALIGNED_NEAR", "UNKNOWN", "LOST")
+STATES = tuple(
+    "IDLE DONE DOCKED_IN BUMPED_DOCK BUMPED SCAN FIND_STREAM GET_STREAM ALIGNED ALIGNED_FAR ALIGNED_NEAR "
+    "UNKNOWN LOST".split()
+)
 DONE, UNKNOWN = STATES.index("DONE"), STATES.index("UNKNOWN")
 # Period of the unicycle [s], its charger state and bumper; the dock's half width and the bumper's play [m].
 PERIOD, CHARGING, CENTRE_BUMPER, DOCK_HALF_WIDTH, TOUCH = 0.02, 6, 2, 0.11, 0.001
