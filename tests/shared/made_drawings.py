@@ -68,14 +68,14 @@ def dxf_of(walls, path: Path, unit: int, factor: float) -> None:
         across = (-math.sin(wall.yaw) * wall.thickness / 2.0, math.cos(wall.yaw) * wall.thickness / 2.0)
         for first, last in zip(edges[::2], edges[1::2]):
             for side in (-1, 1):
-                ends = [
+                begin, end = (
                     np.add(wall.point_at(each), np.multiply(side, across)) * factor for each in (first, last)
-                ]
-                space.add_line(*ends, dxfattribs={"layer": "A-WALL"})
+                )
+                space.add_line(begin, end, dxfattribs={"layer": "A-WALL"})
         for each in wall.openings:
             if each.kind == "window":
-                ends = [np.multiply(wall.point_at(edge), factor) for edge in (each.first, each.last)]
-                space.add_line(*ends, dxfattribs={"layer": "WINDOWS"})
+                begin, end = (np.multiply(wall.point_at(edge), factor) for edge in (each.first, each.last))
+                space.add_line(begin, end, dxfattribs={"layer": "WINDOWS"})
     space.add_line((0, 0), (30 * factor, 30 * factor), dxfattribs={"layer": "DIMENSIONS"})
     document.saveas(path)
 

@@ -41,6 +41,7 @@ class EditorSession:
     def __init__(self, folder: Path, plan: Optional[HomePlan] = None):
         self.folder, self.trials = folder, HomeTrials(folder)
         self._lock = threading.Lock()
+        self._plan: HomePlan
         if plan is None:
             plan = load_plan(folder / PLAN) if (folder / PLAN).is_file() else HomePlan(folder.name)
         try:

@@ -78,7 +78,7 @@ def _shades(path: Path) -> np.ndarray:
                 size = f"{image.width} x {image.height}"
                 most = f"{MAX_PIXELS // 1_000_000} million"
                 raise ImportPlanError(f"{path}: {size} pixels are more than {most}; reduce the picture")
-            upright = ImageOps.exif_transpose(image)
+            upright = ImageOps.exif_transpose(image) or image
             opaque = Image.new("RGBA", upright.size, "white")
             opaque.alpha_composite(upright.convert("RGBA"))
             return np.flipud(np.asarray(opaque.convert("L")))
