@@ -31,6 +31,7 @@ sys.path[:0] = [str(path) for path in ROOT.glob("src/*/src")] + [str(ROOT / "tes
 from browser import Browser, Tab  # noqa: E402
 from docking_animation import save_docking  # noqa: E402
 from editor_animation import save_editor  # noqa: E402
+from import_pictures import save_imports  # noqa: E402
 
 from run_report.picture import save_animation  # noqa: E402
 
@@ -89,6 +90,11 @@ def take_docking(path: Path, _logs: Optional[Path]) -> None:
 def take_editor(path: Path, _logs: Optional[Path]) -> None:
     """A home drawn in the editor, and its mission."""
     save_editor(path, photograph)
+
+
+def take_imports(path: Path, _logs: Optional[Path]) -> None:
+    """Take the picture of imported plans."""
+    save_imports(path, ROOT / "map/home.yaml")
 
 
 def take_cockpit(path: Path, _logs: Optional[Path]) -> None:
@@ -198,6 +204,7 @@ TAKERS: Dict[str, Callable[[Path, Optional[Path]], None]] = {
     "report.png": take_report,
     "cockpit.gif": take_cockpit,
     "editor.gif": take_editor,
+    "imports.png": take_imports,
     "docking.gif": take_docking,
     "docking.png": take_docking,
     "cockpit_tools.png": take_tools,
