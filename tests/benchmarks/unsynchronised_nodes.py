@@ -116,7 +116,7 @@ def first_difference(
 
 
 def run_mission(options: argparse.Namespace, seed: int, is_busy: bool) -> MissionRun:
-    """Run a mission; the recorder is a process of its own, as rospy joins one graph in its life."""
+    """Run a mission; the recorder is another process, as rospy joins one graph in its life."""
     with contextlib.ExitStack() as stack:
         environment = {**os.environ, "ROS_MASTER_URI": f"http://127.0.0.1:{_free_port()}"}
         environment["ROS_LOG_DIR"] = stack.enter_context(tempfile.TemporaryDirectory())
