@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from pick_objects import Delivery, Errand, Mission, MissionError, parse_mission
-from pick_objects.search import LookForObject, LookTaken, ObjectSearch, SearchArea
+from pick_objects.search import LookForObject, LookTaken, ObjectSearch, SearchArea, search_area_of
 from planar import Pose2, SettingsError, grid_from_picture
 from planar.driving import FinishTask, GoalFailed, GoalReached
 from planar.maps.places import NamedPlace
@@ -86,6 +86,12 @@ def test_views_that_cannot_be_reached_are_left_out(area):
 def test_a_map_without_furniture_is_refused():
     with pytest.raises(SettingsError, match="has no furniture"):
         SearchArea(GRID, semantic_map(tops=()))
+
+
+@pytest.mark.parametrize("semantics", [None, semantic_map(tops=())])
+def test_without_furniture_there_is_nowhere_to_search(semantics):
+    """As in a home that was imported from walls alone: its other missions run."""
+    assert search_area_of(GRID, semantics) is None
 
 
 DESK = NamedPlace("desk", Pose2(6.0, 0.6))

@@ -18,7 +18,7 @@ from headless_mission.localization import LocalizationHooks
 from headless_mission.navigation import EpisodeMoveBaseClient, NavigationHooks
 from headless_mission.observers import MissionObserver
 from headless_mission.result import EpisodeResult
-from pick_objects import FinishTask, Mission, SearchArea
+from pick_objects import FinishTask, Mission, search_area_of
 from planar import OccupancyGrid
 from planar.maps.semantic_map import SemanticMap
 from sim_bridge import Episode, RobotProfile, Simulation
@@ -62,7 +62,7 @@ class HeadlessMission:
         )
         navigation = NavigationHooks(settings, grid, encoding, conditions.zones)
         client = EpisodeMoveBaseClient(navigation, encoding)
-        area = None if semantic_map is None else SearchArea(grid, semantic_map)
+        area = search_area_of(grid, semantic_map)
         self._errand = errand = ErrandHooks(mission, navigation, client, conditions.mission_start, area)
         objects = [each for detector in robot.sensors_of(ObjectDetectorProfile) for each in detector.objects]
         self._observer = MissionObserver(simulation, navigation, errand, parcel, objects)

@@ -9,7 +9,7 @@ from pick_objects.goal_driver import GoalDriver, MoveBasePort
 from pick_objects.job import DeliveryJob, DeliveryStage, ErrandState, ObjectLocation
 from pick_objects.mission import Delivery, Mission, MissionError, MissionObject, errand_mission
 from pick_objects.mission_file import load_mission, parse_mission
-from pick_objects.search import LookForObject, LookTaken, SearchArea
+from pick_objects.search import LookForObject, LookTaken, SearchArea, search_area_of
 from planar.driving import FinishTask, GoalFailed, GoalReached, RobotDisplaced
 
 __all__ = [
@@ -43,4 +43,5 @@ __all__ = [
     "load_mission",
     "parse_mission",
     "resume_errand",
+    "search_area_of",
 ]

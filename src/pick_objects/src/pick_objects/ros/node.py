@@ -17,7 +17,7 @@ from pick_objects.mission_file import load_mission, parse_mission
 from pick_objects.ros.deliver_server import DeliverServer
 from pick_objects.ros.mission_publisher import MissionPublisher, delivery_from_msg
 from pick_objects.ros.navigation_client import NavigationClient
-from pick_objects.search.area import SearchArea
+from pick_objects.search.area import SearchArea, search_area_of
 from planar import OccupancyGrid
 from planar.driving import FinishTask
 from planar.maps.places import NamedPlace, load_pickup_and_dropoff, load_places, unreachable_reason
@@ -154,8 +154,8 @@ class PickObjectsNode:
         settings = self._settings
         if not self._wait_for(lambda: self._map is not None, settings.map_timeout):
             rospy.logwarn("no map within %g s: the places are not checked", settings.map_timeout)
-        elif self._map is not None and self._semantic_map is not None and self._semantic_map.furniture:
-            self._area = SearchArea(self._map, self._semantic_map)
+        elif self._map is not None:
+            self._area = search_area_of(self._map, self._semantic_map)
         self._step.join(takes_turns=True)
         if not self._wait_for(lambda: not self._missing(), settings.server_timeout):
             return f"not ready after {settings.server_timeout:g} s: waiting for {', '.join(self._missing())}"

@@ -1,6 +1,6 @@
 """Object search: where to look next, given what is usually where and what was seen. No ROS."""
 
-from pick_objects.search.area import SearchArea
+from pick_objects.search.area import SearchArea, search_area_of
 from pick_objects.search.execution import (
     LookForObject,
     LookTaken,
@@ -18,4 +18,5 @@ __all__ = [
     "ObjectSearch",
     "SearchArea",
     "SearchExecution",
+    "search_area_of",
 ]

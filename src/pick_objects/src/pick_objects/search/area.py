@@ -160,3 +160,15 @@ def _without_low_tops(
             inside = (local <= np.array(top.size) / 2.0 + grid.resolution / 2.0).all(axis=1)
             cells[tuple(rows_cols[inside].T)] = FREE
     return OccupancyGrid(cells, grid.resolution, grid.origin)
+
+
+def search_area_of(grid: OccupancyGrid, semantic_map: Optional[SemanticMap]) -> Optional[SearchArea]:
+    """Return where objects can be searched in a home; None without a semantic map or furniture.
+
+    Args:
+        grid: Map of the home.
+        semantic_map: Furniture and priors; None if there is none.
+    """
+    if semantic_map is None or not semantic_map.furniture:
+        return None
+    return SearchArea(grid, semantic_map)

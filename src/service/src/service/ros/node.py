@@ -9,7 +9,7 @@ from typing import Callable, Dict, List, Optional, Tuple
 
 import rospy
 
-from pick_objects import Mission, SearchArea, load_mission
+from pick_objects import Mission, load_mission, search_area_of
 from planar import OccupancyGrid, Pose2
 from planar.geometry.pose import pose_of_text
 from planar.maps.places import load_places, obstruction_at, unreachable_reason
@@ -113,9 +113,7 @@ class ServiceNode:
         around = PlanningModel(travel, self._energy, staging)
         semantic_map = self._semantic_map
         known = Knowledge(tuple(self._mission.places), staging is not None, semantic_map=semantic_map)
-        area = None
-        if semantic_map is not None and semantic_map.furniture:
-            area = SearchArea(self._map, semantic_map)
+        area = search_area_of(self._map, semantic_map)
         site = Site(self._mission.places, around, known, area)
         return RequestService(site, self._service_settings, journal.restore(), find_ended=journal.ended_task)
 
