@@ -11,8 +11,17 @@ from planar import OccupancyGrid, Pose2
 from planar.maps.semantic_map import FurnitureTop, ObjectPrior, SemanticMap
 from service.errors import RequestError
 from service.requests.mission_requests import documents_of
-from service.requests.parser import Knowledge
-from service.requests.request import Fetch, Find
+from service.requests.parser import Knowledge, parse_request
+from service.requests.request import (
+    DESCRIPTIONS,
+    Deliver,
+    Fetch,
+    Find,
+    Go,
+    GoToDock,
+    Patrol,
+    Wait,
+)
 from service.requests.text import parse_text
 from service.task import TaskStatus
 
@@ -109,6 +118,28 @@ def test_the_forms_of_searches():
     assert parse_text("find cup") == {"category": "find", "description": {"object": "cup"}}
     bring = {"category": "fetch", "description": {"object": "cup", "to": "living room"}}
     assert parse_text("bring cup to living room") == bring
+
+
+KINDS = [
+    Deliver("cup", "kitchen", "desk"),
+    Fetch("cup", "desk"),
+    Find("cup"),
+    Go("desk"),
+    Patrol(("desk", "kitchen"), 2),
+    Wait(90.0, "desk"),
+    GoToDock(),
+]
+
+
+@pytest.mark.parametrize("description", KINDS)
+def test_the_text_of_a_request_is_a_request_again(description):
+    known = Knowledge(tuple(PLACES), has_dock=True, semantic_map=MAP)
+    document = {**parse_text(description.text), "priority": 0}
+    assert parse_request(document, known, NOW).description == description
+
+
+def test_all_kinds_of_requests_have_a_text():
+    assert {type(each) for each in KINDS} == set(DESCRIPTIONS.values())
 
 
 def test_missions_with_searches_are_requests():

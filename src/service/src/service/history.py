@@ -81,19 +81,4 @@ def _line(task: ServiceTask) -> str:
     late = ", late" if task.is_late else ""
     reason = f" ({task.reason})" if task.reason else ""
     at = clock_text(task.finished_at or 0.0)
-    return f"{at}  {task.id:>8}  {task.status.value}{late}{reason}  {description_text(task)}"
-
-
-def description_text(task: ServiceTask) -> str:
-    """Return what a task is, as a line of text that is a request again."""
-    values = vars(task.request.description)
-    forms = {
-        "deliver": "deliver {object_name} from {source} to {destination}",
-        "fetch": "fetch {object_name} to {destination}",
-        "go": "go {place}",
-        "wait": "wait {seconds:g}s" + (" at {place}" if values.get("place") else ""),
-        "dock": "dock",
-    }
-    if task.request.description.category == "patrol":
-        return f"patrol {' '.join(values['places'])} {values['rounds']} times"
-    return forms[task.request.description.category].format(**values)
+    return f"{at}  {task.id:>8}  {task.status.value}{late}{reason}  {task.request.description.text}"

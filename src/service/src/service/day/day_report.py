@@ -13,7 +13,6 @@ from run_report.charts import ChartLine, chart
 from run_report.grid_image import data_uri, grid_image
 from run_report.page import document, table, tiles
 from service.day.simulated_day import SimulatedDayRecord
-from service.history import description_text
 from service.requests.calendar_times import clock_text
 from service.task import ServiceTask, TaskStatus
 
@@ -130,7 +129,7 @@ def _row(task: ServiceTask) -> Tuple[str, ...]:
     request, result = task.request, task.status.value + (", late" if task.is_late else "")
     times = (request.release, request.deadline, task.finished_at)
     asked, due, ended = ("" if stamp is None else _clock(stamp) for stamp in times)
-    return asked, description_text(task), due, ended, result, task.reason or _why_late(task)
+    return asked, task.request.description.text, due, ended, result, task.reason or _why_late(task)
 
 
 def _why_late(task: ServiceTask) -> str:

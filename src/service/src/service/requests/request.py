@@ -22,6 +22,10 @@ class Deliver:
     source: str
     destination: str
 
+    @property
+    def text(self) -> str:
+        return f"deliver {self.object_name} from {self.source} to {self.destination}"
+
     def steps(self) -> Tuple[Step, ...]:
         name = self.object_name
         return Drive(self.source), PickUp(name), Drive(self.destination), SetDown(name, self.destination)
@@ -35,6 +39,10 @@ class Fetch:
     object_name: str
     destination: str
 
+    @property
+    def text(self) -> str:
+        return f"fetch {self.object_name} to {self.destination}"
+
     def steps(self) -> Tuple[Step, ...]:
         name = self.object_name
         return DriveToObject(name), PickUp(name), Drive(self.destination), SetDown(name, self.destination)
@@ -47,6 +55,10 @@ class Find:
     category: ClassVar[str] = "find"
     object_name: str
 
+    @property
+    def text(self) -> str:
+        return f"find {self.object_name}"
+
     def steps(self) -> Tuple[Step, ...]:
         return (FindObject(self.object_name),)
 
@@ -57,6 +69,10 @@ class Go:
 
     category: ClassVar[str] = "go"
     place: str
+
+    @property
+    def text(self) -> str:
+        return f"go {self.place}"
 
     def steps(self) -> Tuple[Step, ...]:
         return (Drive(self.place),)
@@ -69,6 +85,10 @@ class Patrol:
     category: ClassVar[str] = "patrol"
     places: Tuple[str, ...]
     rounds: int = 1
+
+    @property
+    def text(self) -> str:
+        return f"patrol {' '.join(self.places)} {self.rounds} times"
 
     def steps(self) -> Tuple[Step, ...]:
         return tuple(map(Drive, self.places)) * self.rounds
@@ -87,6 +107,10 @@ class Wait:
     seconds: float
     place: str = ""
 
+    @property
+    def text(self) -> str:
+        return f"wait {self.seconds:g}s" + (f" at {self.place}" if self.place else "")
+
     def steps(self) -> Tuple[Step, ...]:
         return (*((Drive(self.place),) if self.place else ()), Pause(self.seconds))
 
@@ -97,10 +121,15 @@ class GoToDock:
 
     category: ClassVar[str] = "dock"
 
+    @property
+    def text(self) -> str:
+        return self.category
+
     def steps(self) -> Tuple[Step, ...]:
         return (EnterDock(),)
 
 
+# Each has its steps, and its text, which is a request again.
 Description = Union[Deliver, Fetch, Find, Go, Patrol, Wait, GoToDock]
 DESCRIPTIONS: Mapping[str, Type[Any]] = {
     kind.category: kind for kind in (Deliver, Fetch, Find, Go, Patrol, Wait, GoToDock)

@@ -11,7 +11,6 @@ from pick_objects.mission import Mission
 from planar import Pose2
 from planar_ros.messages.conversion import pose2_to_msg
 from planar_ros.node.topics import flush_and_close
-from service.history import description_text
 from service.request_service import RequestService
 from service.requests.request import Deliver, Fetch
 from service.requests.steps import Drive, DriveToObject, PickUp, SetDown
@@ -76,7 +75,9 @@ class MissionTopics:
         news = (state["activity"], state["is_docked"], charge, queue)
         if news != self._published_queue:
             self._published_queue = news
-            shown = [{**task_to_json(each), "text": description_text(each)} for each in tasks[:MAX_SHOWN]]
+            shown = [
+                {**task_to_json(each), "text": each.request.description.text} for each in tasks[:MAX_SHOWN]
+            ]
             self._service_state.publish(json.dumps({"state": state, "tasks": shown}))
 
     def message(self, service: RequestService, now: float) -> MissionState:
