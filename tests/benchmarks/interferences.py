@@ -12,16 +12,15 @@ import argparse
 import itertools
 import json
 import multiprocessing
-import subprocess
 import sys
 import tempfile
 import time
 from collections import deque
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Callable, Deque, Dict, Iterator, List, Optional, Tuple
+from typing import Any, Callable, Deque, Dict, List, Optional, Tuple
 
+from helpers.busy_loops import busy_loops
 from killed_nodes import join_graph, wait_for_end
 from soak import RUNS, Graph, Leftovers
 
@@ -246,18 +245,6 @@ def disturbed_run(kind: str, stage: DeliveryStage, seed: int) -> DisturbedRun:
     errors = track.pickup_error, track.dropoff_error
     touched = bool(result.get("collisions"))
     return DisturbedRun(kind, stage.name.lower(), seed, result["success"], result["reason"], touched, errors)
-
-
-@contextmanager
-def busy_loops(count: int) -> Iterator[None]:
-    """Keep processors busy."""
-    loops = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(count)]
-    try:
-        yield
-    finally:
-        for loop in loops:
-            loop.kill()
-            loop.wait()
 
 
 def main() -> int:

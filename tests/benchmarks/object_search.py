@@ -137,7 +137,7 @@ def run_home(options, seed):
     home = furnished_home(seed)
     begin = time.process_time()
     area = SearchArea(home.grid, home.semantic_map, MODEL)
-    area.seconds_between_views()
+    _ = area.seconds_between_views
     prepared = time.process_time() - begin
     paths = area.paths
     lengths = paths.lengths_from(paths.node_at(START.x, START.y))

@@ -16,16 +16,18 @@ import multiprocessing
 import os
 import queue
 import signal
-import socket
 import subprocess
 import sys
 import tempfile
 import time
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any, Dict, Iterator, List, Tuple
+from typing import Any, Dict, List, Tuple
 
 import numpy as np
+from helpers.busy_loops import busy_loops
+
+from supervision.ros.graph import free_port
 
 ROOT = Path(__file__).resolve().parents[2]
 START_SECONDS, RUN_SECONDS, STOP_SECONDS = 90.0, 600.0, 30.0
@@ -118,10 +120,10 @@ def first_difference(
 def run_mission(options: argparse.Namespace, seed: int, is_busy: bool) -> MissionRun:
     """Run a mission; the recorder is another process, as rospy joins one graph in its life."""
     with contextlib.ExitStack() as stack:
-        environment = {**os.environ, "ROS_MASTER_URI": f"http://127.0.0.1:{_free_port()}"}
+        environment = {**os.environ, "ROS_MASTER_URI": f"http://127.0.0.1:{free_port()}"}
         environment["ROS_LOG_DIR"] = stack.enter_context(tempfile.TemporaryDirectory())
         if is_busy:
-            stack.enter_context(busy_processes(options.busy))
+            stack.enter_context(busy_loops(options.busy))
         results: Any = multiprocessing.Queue()
         recorder = multiprocessing.Process(
             target=_record, args=(environment["ROS_MASTER_URI"], seed, is_busy, results), daemon=True
@@ -208,31 +210,6 @@ def _stop(launch: subprocess.Popen) -> None:
         launch.wait()
 
 
-@contextlib.contextmanager
-def busy_processes(count: int) -> Iterator[None]:
-    """Keep ``count`` processes busy."""
-    loops = [multiprocessing.Process(target=_compute, daemon=True) for _ in range(count)]
-    for loop in loops:
-        loop.start()
-    try:
-        yield
-    finally:
-        for loop in loops:
-            loop.terminate()
-            loop.join()
-
-
-def _compute() -> None:
-    while True:
-        pass
-
-
-def _free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
-
-
 def main() -> int:
     options = _options()
     print(
@@ -279,7 +256,10 @@ def _options() -> argparse.Namespace:
         "--log", type=Path, default=Path("unsynchronised_nodes.log"), help="output of the nodes"
     )
     parser.add_argument("--json", type=Path, help="also write the table here")
-    return parser.parse_args()
+    options = parser.parse_args()
+    if options.runs < 2:
+        parser.error("--runs: at least 2, which are compared")
+    return options
 
 
 if __name__ == "__main__":

@@ -40,7 +40,22 @@ ALS_ROS: Dict[str, Any] = {
 _DELIVERED = 0.015
 
 
-class Amcl:
+class _Localizer:
+    """What is alike for all nodes."""
+
+    _player: Player
+    _node: Node
+
+    def set_pose(self, base_in_map: Pose2) -> None:
+        """State where the robot is, as in RViz."""
+        self._player.set_pose(base_in_map)
+
+    def cpu_seconds(self) -> float:
+        """CPU time so far."""
+        return self._node.cpu_seconds()
+
+
+class Amcl(_Localizer):
     """A node with amcl's interface; the quality of amcl is minus its standard deviation."""
 
     def __init__(self, player: Player, command: str, start: Pose2, seed: int):
@@ -62,14 +77,6 @@ class Amcl:
         self._odom_in_map = self._player.show(observation, period=period) or self._odom_in_map
         return self._odom_in_map @ observation.base_in_odom, self._quality
 
-    def set_pose(self, base_in_map: Pose2) -> None:
-        """State where the robot is, as in RViz."""
-        self._player.set_pose(base_in_map)
-
-    def cpu_seconds(self) -> float:
-        """CPU time so far."""
-        return self._node.cpu_seconds()
-
     def close(self) -> None:
         """End the node."""
         self._node.close()
@@ -84,7 +91,7 @@ class Amcl:
             self._quality = -math.sqrt(message.pose.covariance[0] + message.pose.covariance[7])
 
 
-class AlsRos:
+class AlsRos(_Localizer):
     """The node mcl of als_ros with its reliability, which integrates the speeds of nav_msgs/Odometry."""
 
     def __init__(self, player: Player, program: Path, grid: OccupancyGrid, start: Pose2):
@@ -119,14 +126,6 @@ class AlsRos:
         """Return the estimate of the base's pose after an observation, and its quality."""
         self._estimate = self._answer(observation, period, ANSWER_SECONDS) or self._estimate
         return self._estimate, self._quality
-
-    def set_pose(self, base_in_map: Pose2) -> None:
-        """State where the robot is, as in RViz."""
-        self._player.set_pose(base_in_map)
-
-    def cpu_seconds(self) -> float:
-        """CPU time so far."""
-        return self._node.cpu_seconds()
 
     def close(self) -> None:
         """End the node."""

@@ -1,6 +1,7 @@
 """Where furniture tops can be looked at from, what each view shows, and how far views are apart."""
 
 import math
+from functools import cached_property
 from typing import Dict, List, Optional, Tuple
 
 import numpy as np
@@ -55,20 +56,44 @@ class SearchArea:
         points = [top.points_xy() for top in self.tops]
         self.points_xy = np.concatenate(points)
         self.top_of_point = np.repeat(np.arange(len(points)), [len(each) for each in points])
-        self.paths = GridPaths(grid)
-        clearance = distance_field(grid.cells != FREE, grid.resolution)
-        cells = np.argwhere(clearance > STANDING_CLEARANCE)
-        self._standing_xy = grid.points_of(cells) if len(cells) else np.empty((0, 2))
-        self.views, self.detection = self._choose_views(grid, cells, model)
-        self._nodes = [self.paths.node_at(view.x, view.y) for view in self.views]
-        self._seconds: Optional[np.ndarray] = None
+        self._grid, self._model = grid, model
 
+    # Computed when a search begins: most missions have none.
+    @cached_property
+    def paths(self) -> GridPaths:
+        return GridPaths(self._grid)
+
+    @property
+    def views(self) -> Tuple[Pose2, ...]:
+        return self._views_and_detection[0]
+
+    @property
+    def detection(self) -> np.ndarray:
+        return self._views_and_detection[1]
+
+    @cached_property
     def seconds_between_views(self) -> np.ndarray:
-        """Return the time to drive from each view to each, and to look, (V, V) [s]."""
-        if self._seconds is None:
-            rows = [self.paths.lengths_from(node)[self._nodes] for node in self._nodes]
-            self._seconds = STOP_SECONDS + np.array(rows).reshape(len(rows), len(rows)) / SPEED
-        return self._seconds
+        """Time to drive from each view to each, and to look, (V, V) [s]."""
+        rows = [self.paths.lengths_from(node)[self._nodes] for node in self._nodes]
+        return STOP_SECONDS + np.array(rows).reshape(len(rows), len(rows)) / SPEED
+
+    @cached_property
+    def _standing_cells(self) -> np.ndarray:
+        clearance = distance_field(self._grid.cells != FREE, self._grid.resolution)
+        return np.argwhere(clearance > STANDING_CLEARANCE)
+
+    @cached_property
+    def _standing_xy(self) -> np.ndarray:
+        cells = self._standing_cells
+        return self._grid.points_of(cells) if len(cells) else np.empty((0, 2))
+
+    @cached_property
+    def _views_and_detection(self) -> Tuple[Tuple[Pose2, ...], np.ndarray]:
+        return self._choose_views(self._grid, self._standing_cells, self._model)
+
+    @cached_property
+    def _nodes(self) -> List[int]:
+        return [self.paths.node_at(view.x, view.y) for view in self.views]
 
     def seconds_to_views(self, base_in_map: Pose2) -> np.ndarray:
         """Return the time to drive from a pose to each view, and to look [s], (V,)."""

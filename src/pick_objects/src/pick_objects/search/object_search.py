@@ -58,7 +58,7 @@ class ObjectSearch:
             return None
         area, seconds = self.area, self.area.seconds_to_views(base_in_map)
         is_possible = self._is_allowed & np.isfinite(seconds)
-        return _best_first(seconds, area.seconds_between_views(), area.detection, self.mass, is_possible)
+        return _best_first(seconds, area.seconds_between_views, area.detection, self.mass, is_possible)
 
     def is_over(self, base_in_map: Pose2) -> bool:
         """Return whether what can be seen was seen.
