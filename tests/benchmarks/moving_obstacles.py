@@ -2,7 +2,10 @@
 """Drives scenarios with moving obstacles without ROS and reports whether contacts were avoidable.
 
     python3 tests/benchmarks/moving_obstacles.py scenarios/crossings.yaml --seeds 0-19
+    python3 tests/benchmarks/moving_obstacles.py scenarios/crossings.yaml --families hard --seeds 100-109
 
+With --families the scenario's world is replaced by those of each family: easy, medium and hard are DynaBARN's
+levels, the others the motions of laboratory.generators.motions.
 A contact was avoidable if a search over the robot's controls, with the true motion of all obstacles, finds a
 trajectory without a contact from a second before it until a second after it.
 """
@@ -10,7 +13,7 @@ trajectory without a contact from a second before it until a second after it.
 import argparse
 import json
 import sys
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from multiprocessing import Pool
 from pathlib import Path
 from typing import List
@@ -19,6 +22,8 @@ import numpy as np
 from helpers.timed_navigation import TimedNavigation
 
 from headless_mission import EpisodeConditions
+from laboratory.generators.crossings import POLYNOMIALS, STRAIGHT, CrossingCylinders
+from laboratory.generators.motions import MOTIONS
 from laboratory.results.avoidance import RobotLimits, TrueObstacles, can_avoid, state_before
 from laboratory.scenario.seeds import parse_seeds
 from laboratory.statistics.summary import share
@@ -32,6 +37,12 @@ from sim_bridge import Simulation, robot_named
 
 # Time before a contact from which it had to be avoided, and time after it without a contact [s].
 BEFORE, AFTER = 1.0, 1.0
+FAMILIES = {
+    "easy": CrossingCylinders(0.5, 0.9, 5, 14, motion=POLYNOMIALS, orders=(1, 2)),
+    "medium": CrossingCylinders(1.0, 1.4, 15, 18, motion=POLYNOMIALS, orders=(3, 5)),
+    "hard": CrossingCylinders(1.5, 1.9, 20, 23, motion=POLYNOMIALS, orders=(4, 6)),
+    **{motion: CrossingCylinders(motion=motion) for motion in (STRAIGHT, *MOTIONS) if motion != POLYNOMIALS},
+}
 # Speed below which the robot counts as standing [m/s].
 STANDING_SPEED = 0.05
 
@@ -40,8 +51,8 @@ STANDING_SPEED = 0.05
 class Run:
     """One run. Times in simulated seconds but ``tick_ms``, CPU time per control tick.
 
-    ``avoidable``, ``speed`` and ``body``: of a contact, whether it was avoidable, the robot's speed and what
-    it touched.
+    ``scenario``: the scenario's file, or the family. ``avoidable``, ``speed`` and ``body``: of a contact,
+    whether it was avoidable, the robot's speed and what it touched.
     """
 
     scenario: str
@@ -58,13 +69,15 @@ class Run:
 
 def main() -> int:
     options = _options()
-    tasks = [(name, seed) for name in options.scenarios for seed in parse_seeds(options.seeds)]
+    names = options.families or options.scenarios
+    kinds = [(file, family) for file in options.scenarios for family in options.families or [None]]
+    tasks = [(*kind, seed) for kind in kinds for seed in parse_seeds(options.seeds)]
     runs: List[Run] = []
     with Pool(options.jobs) as pool:
         for run in pool.imap(_run, tasks):
             print(_line(run), flush=True)
             runs.append(run)
-    for name in options.scenarios:
+    for name in names:
         print(_summary(name, [run for run in runs if run.scenario == name]))
     print(_summary("all", runs))
     if options.json:
@@ -73,8 +86,10 @@ def main() -> int:
 
 
 def _run(task) -> Run:
-    name, seed = task
+    name, family, seed = task
     scenario = load_scenario(name)
+    if family is not None:
+        name, scenario = family, replace(scenario, world=FAMILIES[family])
     if not isinstance(scenario.task, OdomGoalTask):
         raise SettingsError(f"{name}: its task must be reach")
     arena, robot, start = scenario.arena(seed), robot_named(scenario.robot), scenario.start
@@ -135,6 +150,7 @@ def _summary(name: str, runs: List[Run]) -> str:
 def _options():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("scenarios", nargs="+", help="scenario files with the task reach")
+    parser.add_argument("--families", nargs="+", choices=FAMILIES, help="worlds instead of the scenario's")
     parser.add_argument("--seeds", default="0-19", help="such as 0-19 or 1,5,7")
     parser.add_argument("--jobs", type=int, default=1, help="processes")
     parser.add_argument("--json", help="file for the figures of every run")

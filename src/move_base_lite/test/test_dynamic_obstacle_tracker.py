@@ -8,6 +8,8 @@ from robot_in_picture import PERSON_RADIUS, room, scan_with_people, two_rooms, w
 
 from move_base_lite.costmap import observation_from_scan
 from move_base_lite.dynamic_obstacles import DynamicObstacleTracker, TrackerSettings
+from move_base_lite.dynamic_obstacles.scan_segments import ScanSegment
+from move_base_lite.dynamic_obstacles.track import MAX_SPEED, Track
 from planar import Pose2
 from planar.geometry.ray_casting import cast_rays
 
@@ -142,6 +144,17 @@ def test_a_reversal_is_predicted_half_a_second_later():
             assert rows[0][3] == pytest.approx(-1.2, abs=0.4)
 
 
+@pytest.mark.parametrize("seed", range(5))
+def test_a_sudden_reversal_is_known_from_the_next_scan(seed):
+    def cart_at(t):
+        return 4.0, 2.0 + 1.6 * min(t, 1.5) - 1.6 * max(t - 1.5, 0.0)
+
+    found = track(room(9.0, 8.0), lambda t: Pose2(1.0, 4.0), cart_at, 2.5, seed, 0.5, TrackerSettings(9.0))
+    for stamp, rows in found:
+        if stamp > 1.55:
+            assert rows[0][3] == pytest.approx(-1.6, abs=0.4)
+
+
 def test_an_occluded_person_is_still_predicted():
     grid = with_block(room(8.0, 5.0), 2.6, 1.8, 2.8, 3.2)
 
@@ -153,6 +166,75 @@ def test_an_occluded_person_is_still_predicted():
     assert hidden
     for stamp, rows in hidden:
         assert nearest_to(rows, person_at(stamp)) < 0.3
+
+
+def test_a_partly_hidden_object_keeps_its_radius():
+    grid = with_block(room(8.0, 5.0), 2.6, 2.5, 2.8, 3.6)
+
+    def cart_at(t):
+        return 3.6, 0.6 + 0.6 * t
+
+    found = track(grid, lambda t: Pose2(1.0, 2.5), cart_at, 4.0, radius=0.5)
+    half_hidden = [(stamp, rows) for stamp, rows in found if 2.2 < cart_at(stamp)[1] < 2.9]
+    assert half_hidden
+    for stamp, rows in half_hidden:
+        ((x, y, _, _, radius),) = rows
+        assert radius > 0.45
+        assert math.dist((x, y), cart_at(stamp)) < 0.15
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_two_that_overlap_in_the_scan_keep_their_velocities(seed):
+    def pair_at(t):  # nearest to each other after 2.2 s, one segment then
+        return [(3.6, 0.8 + 1.0 * t), (4.0, 5.2 - 1.0 * t)]
+
+    found = track(
+        room(9.0, 6.0), lambda t: Pose2(1.0, 3.0), pair_at, 3.6, seed, 0.5, TrackerSettings(9.0, True)
+    )
+    for stamp, rows in found[15:]:
+        assert nearest_to(rows, pair_at(stamp)[0]) < 0.25
+        nearest = min(rows, key=lambda row: math.dist(row[:2], pair_at(stamp)[0]))
+        assert math.dist(nearest[2:4], (0.0, 1.0)) < 0.5
+        assert nearest[4] == pytest.approx(0.5, abs=0.08)
+
+
+def test_an_object_seen_in_part_gets_its_size_when_all_of_it_is_seen():
+    grid = with_block(room(8.0, 5.0), 2.6, 2.5, 2.8, 4.9)
+
+    def cart_at(t):  # comes out from behind the block
+        return 3.6, 4.2 - 0.8 * t
+
+    found = track(
+        grid, lambda t: Pose2(1.0, 2.5), cart_at, 4.0, radius=0.5, settings=TrackerSettings(9.0, True)
+    )
+    in_view = [(stamp, rows) for stamp, rows in found if cart_at(stamp)[1] < 1.9]
+    assert in_view
+    for stamp, rows in in_view:
+        ((x, y, _, _, radius),) = rows
+        assert radius == pytest.approx(0.5, abs=0.07)
+        assert math.dist((x, y), cart_at(stamp)) < 0.15
+
+
+def test_a_cart_that_recedes_from_where_it_was_first_seen_moves():
+    def cart_at(t):  # hides the space that it enters
+        return 2.5 + 0.8 * t, 2.0
+
+    found = track(room(9.0, 4.0), lambda t: Pose2(1.0, 2.0), cart_at, 2.0, 0, 0.5, TrackerSettings(9.0, True))
+    for stamp, rows in found:
+        if stamp > 1.2:
+            assert nearest_to(rows, cart_at(stamp)) < 0.2
+
+
+def test_a_wrong_match_does_not_make_a_track_faster_than_an_object_can_be():
+    def segment_at(x):
+        points_xy = np.array([[x - 0.1, 1.0], [x, 0.9], [x + 0.1, 1.0]])
+        return ScanSegment(points_xy, np.array([x, 1.0]), 0.1, False)
+
+    tracked = Track(segment_at(1.0), 0.0)
+    for step in range(1, 6):
+        tracked.predict(0.05 * step)
+        tracked.correct(segment_at(1.0 + 0.5 * step), True, True)
+    assert math.hypot(*tracked.state_at(0.25)[2:4]) < MAX_SPEED + 1e-6
 
 
 def test_doors_and_boxes_do_not_move_while_the_robot_drives_past():

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from planar import OccupancyGrid, Pose2, Scan, grid_from_picture
+from planar import Pose2, Scan, grid_from_picture
 from planar.geometry.ray_casting import cast_rays
 from slam_lite.config import MapperSettings
 from slam_lite.mapper import Mapper
@@ -23,7 +23,7 @@ START, STEP = Pose2(1.0, 1.75), Pose2(0.08, 0.0, 0.0)
 
 def errors_of(seed, matcher):
     """Position errors of odometry and of the mapper after a drive of 60 scans [m]."""
-    grid = OccupancyGrid(np.kron(grid_from_picture(ROOM).cells, np.ones((10, 10), np.int8)), 0.05)
+    grid = grid_from_picture(ROOM, 0.05, scale=10)
     rng = np.random.default_rng(seed)
     mapper, true, odometry = Mapper(MapperSettings(matcher_plugin=matcher)), START, START
     for number in range(60):

@@ -3,7 +3,7 @@
 import numpy as np
 
 from amcl_lite import Localizer, LocalizerSettings
-from planar import OccupancyGrid, Pose2, Scan, grid_from_picture
+from planar import Pose2, Scan, grid_from_picture
 from planar.geometry.ray_casting import cast_rays
 
 ROOM = """
@@ -23,7 +23,7 @@ START, STEP = Pose2(1.0, 2.4, 0.0), Pose2(0.1, 0.0, 0.02)
 
 
 def room():
-    return OccupancyGrid(np.kron(grid_from_picture(ROOM).cells, np.ones((10, 10), np.int8)), 0.05)
+    return grid_from_picture(ROOM, 0.05, scale=10)
 
 
 def scan_at(grid, base, stamp, rng):

@@ -1,7 +1,7 @@
 """Small maps, drawn as pictures, on which plugins are checked."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, List, Tuple
 
 import numpy as np
@@ -86,10 +86,8 @@ def check_map(name: str) -> CheckMap:
         Costmap with cells of RESOLUTION, start and goal.
     """
     picture = PICTURES[name].strip()
-    coarse = grid_from_picture(picture.replace("S", ".").replace("G", "."), CELL)
-    times = round(CELL / RESOLUTION)
-    cells = np.kron(coarse.cells, np.ones((times, times), np.int8))
-    grid = replace(coarse, cells=cells, resolution=RESOLUTION)
+    without_marks = picture.replace("S", ".").replace("G", ".")
+    grid = grid_from_picture(without_marks, RESOLUTION, scale=round(CELL / RESOLUTION))
     settings = CostmapSettings(
         robot_radius=RADIUS,
         layers=named_layers(

@@ -19,6 +19,8 @@ MIN_CONCAVITY = 0.15
 FREE_MARGIN = 0.12
 # Sectors of the free range around the sensor.
 DIRECTIONS = 180
+# Angle to the next point beyond a segment's end below which that point can occlude the object [rad].
+OCCLUSION_ANGLE = 0.03
 # Of a round object: least sine of half the angle it subtends, and least share of a circle's depth.
 MIN_SINE, MIN_ROUNDNESS = 0.2, 0.5
 
@@ -70,11 +72,23 @@ class ScanSegment(NamedTuple):
         points_xy: (N, 2) in the odom frame [m].
         centre_xy: (2,) centre of the object, one radius behind the nearest point as seen from the sensor [m].
         radius: Radius of the object [m].
+        is_occluded: Whether a nearer object may hide a part of this one.
     """
 
     points_xy: np.ndarray
     centre_xy: np.ndarray
     radius: float
+    is_occluded: bool
+
+
+def hidden_segment(points_xy: np.ndarray) -> ScanSegment:
+    """Create the segment of an object of which only a part is visible.
+
+    Args:
+        points_xy: (N, 2), in the odom frame [m].
+    """
+    low, high = points_xy.min(axis=0), points_xy.max(axis=0)
+    return ScanSegment(points_xy, 0.5 * (low + high), 0.5 * float(np.hypot(*(high - low))), True)
 
 
 def fitted_centre(points_xy: np.ndarray, expected_xy: np.ndarray, radius: float, prior: float) -> np.ndarray:
@@ -103,8 +117,8 @@ def segments_of(snapshot: ScanSnapshot) -> List[ScanSegment]:
     first, groups, centres = _groups(snapshot.points_xy, snapshot.sensor_in_odom.x, snapshot.sensor_in_odom.y)
     points_xy = np.concatenate((snapshot.points_xy[first:], snapshot.points_xy[:first]))
     return [
-        ScanSegment(points_xy[int(start) : int(end)], centre[:2], float(centre[2]))
-        for (start, end), centre in zip(groups, centres)
+        ScanSegment(points_xy[int(start) : int(end)], centre[:2], float(centre[2]), bool(is_occluded))
+        for (start, end, is_occluded), centre in zip(groups, centres)
     ]
 
 
@@ -200,11 +214,11 @@ def _direction_of(angle):
 def _groups(points_xy, x, y):
     """Split the scan into narrow groups of points.
 
-    Returns the first point after a gap; from there on, start and end of each group (M, 2), and its centre and
-    radius (M, 3), as seen from (x, y).
+    Returns the first point after a gap; from there on, start and end of each group and whether it is occluded
+    (M, 3), and its centre and radius (M, 3), as seen from (x, y).
     """
     size = points_xy.shape[0]
-    groups, centres = np.empty((size, 2), dtype=np.int64), np.empty((size, 3))
+    groups, centres = np.empty((size, 3), dtype=np.int64), np.empty((size, 3))
     first = 0
     while first < size and _gap_before(points_xy, first) <= SEGMENT_GAP:
         first += 1
@@ -218,10 +232,23 @@ def _groups(points_xy, x, y):
             width = _width(points_xy, from_, to)
             if to - from_ >= MIN_SEGMENT_BEAMS and width <= MAX_SEGMENT_WIDTH:
                 centres[count] = _centre_and_radius(points_xy, from_, to, x, y, width)
-                groups[count] = from_ - first, to - first
+                is_occluded = _hides(points_xy, from_ - 1, from_, x, y) or _hides(points_xy, to, to - 1, x, y)
+                groups[count] = from_ - first, to - first, int(is_occluded)
                 count += 1
         start = end
     return first, groups[:count], centres[:count]
+
+
+@numba.njit(cache=True)
+def _hides(points_xy, i, end, x, y):
+    """Whether point ``i``, beside the ``end`` of a segment, is nearer to the sensor at (x, y)."""
+    size = points_xy.shape[0]
+    off_x, off_y = points_xy[i % size, 0] - x, points_xy[i % size, 1] - y
+    end_x, end_y = points_xy[end % size, 0] - x, points_xy[end % size, 1] - y
+    to_point, to_end = math.hypot(off_x, off_y), math.hypot(end_x, end_y)
+    apart = abs(off_x * end_y - off_y * end_x)
+    is_beside = off_x * end_x + off_y * end_y > 0.0 and apart < OCCLUSION_ANGLE * to_point * to_end
+    return is_beside and to_point < to_end
 
 
 @numba.njit(cache=True)

@@ -9,6 +9,8 @@ from move_base_lite.dynamic_obstacles.scan_segments import ScanSegment, ScanSnap
 
 # Standard deviations of a segment's position [m], the acceleration [m/s^2] and the first velocity [m/s].
 MEASUREMENT_SIGMA, ACCELERATION_SIGMA, INITIAL_VELOCITY_SIGMA = 0.03, 3.0, 0.8
+# Highest speed of an object: a wrong match must not send it away [m/s].
+MAX_SPEED = 2.5
 # Gate of the association: standard deviations, and a margin [m].
 GATE_SIGMAS, GATE_MARGIN = 3.0, 0.2
 # Innovation in standard deviations above which the object has manoeuvred and its velocity is uncertain again.
@@ -17,8 +19,17 @@ MANOEUVRE_SIGMAS = 2.0
 MIN_MOVING_SPEED, MAX_VELOCITY_SIGMA = 0.15, 0.35
 # Speed [m/s] and displacement [m] of a moving object if it is unknown whether its place was free before.
 MIN_TRAVEL_SPEED, MIN_TRAVEL = 0.5, 0.2
+# Time by which an object of unknown place must have travelled so far [s].
+MAX_TRAVEL_TIME = 0.5
+# Share of a segment's points that must lie where it was free before, and of an object's first points that
+# must be free now.
+MIN_FREE_SHARE, MIN_VACATED_SHARE = 0.5, 0.9
 # Limits of a radius's change from scan to scan: partial occlusion shrinks a segment, a neighbour enlarges it.
 MIN_RADIUS_RATIO, MAX_RADIUS_RATIO = 0.98, 1.1
+# The upper limit once the whole object has been seen.
+MAX_KNOWN_RADIUS_RATIO = 1.02
+# Ratio of a segment's radius to a moving object's above which the segment is of several objects.
+MERGED_RATIO = 1.2
 # Points within this distance of the object belong to it [m].
 COVER_MARGIN = 0.1
 
@@ -31,6 +42,7 @@ class Track:
             was free before, or it had travelled fast and far since it was first seen and entered free space.
             The latter excludes static objects, whose segments seem to move as other objects occlude them.
         is_static: Whether the object stood when the velocity was last known, and had never moved.
+        is_radius_known: Whether the whole object has been seen; the radius is a lower bound otherwise.
         seen_at: Time of the last matching segment [s].
         moved_at: Time at which it last moved [s].
     """
@@ -45,7 +57,8 @@ class Track:
         self._position, self._velocity = segment.centre_xy, np.zeros(2)
         self._covariance = np.diag([MEASUREMENT_SIGMA**2, INITIAL_VELOCITY_SIGMA**2])
         self._radius, self._stamp, self.seen_at = segment.radius, stamp, stamp
-        self._first_xy = self._position
+        self._first_points_xy, self._first_stamp = segment.points_xy, stamp
+        self._first_xy, self.is_radius_known = self._position, not segment.is_occluded
         self.is_moving = self.is_static = False
         self.moved_at = -math.inf
         self._entered_free_space = False
@@ -77,8 +90,38 @@ class Track:
         return is_unmatched and self.distance_to(segment) < gate
 
     def distance_to(self, segment: ScanSegment) -> float:
-        """Distance to the segment's centre [m]."""
+        """Distance to the segment's centre [m]; of a partly hidden object, with the radius seen before."""
+        if segment.is_occluded and segment.radius < self._radius:
+            return math.dist(self._position, self._fitted_centre(segment))
         return math.dist(self._position, segment.centre_xy)
+
+    def _fitted_centre(self, segment: ScanSegment) -> np.ndarray:
+        prior = MEASUREMENT_SIGMA**2 / self._covariance[0, 0]
+        return fitted_centre(segment.points_xy, self._position, self._radius, prior)
+
+    def boundary_distance(self, points_xy: np.ndarray) -> np.ndarray:
+        """Compute the distance of points from the object's predicted outline.
+
+        Args:
+            points_xy: (N, 2), in the odom frame [m].
+
+        Returns:
+            (N,) [m].
+        """
+        return np.abs(np.hypot(*(points_xy - self._position).T) - self._radius)
+
+    def is_narrower_than(self, segment: ScanSegment) -> bool:
+        """Check whether a segment near the object is too wide to be the object alone.
+
+        Args:
+            segment: Segment of the present scan.
+        """
+        reach = self._radius + segment.radius
+        return (
+            self.is_moving
+            and segment.radius > MERGED_RATIO * self._radius
+            and math.dist(self._position, segment.centre_xy) < reach
+        )
 
     def is_alive(self, snapshot: ScanSnapshot, visible_age: float, occluded_age: float) -> bool:
         """Check whether the track has matched a segment recently enough.
@@ -91,25 +134,31 @@ class Track:
         is_free = snapshot.free_share(self._position[None, :]) > 0.0
         return snapshot.stamp - self.seen_at <= (visible_age if is_free else occluded_age)
 
+    def has_left_its_place(self, snapshot: ScanSnapshot) -> bool:
+        """Check whether the place where the object was first seen is free now.
+
+        Args:
+            snapshot: The present scan.
+        """
+        return snapshot.free_share(self._first_points_xy) >= MIN_VACATED_SHARE
+
     def correct(self, segment: ScanSegment, was_free: bool, was_free_recently: bool) -> None:
         """Correct the state with a matching segment.
 
         Args:
             segment: Segment of the present scan.
             was_free: Whether it lies where the space was free in the reference scan.
-            was_free_recently: The same for the reference scan or a more recent one.
+            was_free_recently: The same for the reference scan or a more recent one, or whether the object has
+                left its first place.
         """
         self._entered_free_space = self._entered_free_space or was_free_recently
-        self._radius *= min(max(segment.radius / self._radius, MIN_RADIUS_RATIO), MAX_RADIUS_RATIO)
-        prior = MEASUREMENT_SIGMA**2 / self._covariance[0, 0]
-        innovation = fitted_centre(segment.points_xy, self._position, self._radius, prior) - self._position
-        if math.hypot(*innovation) > MANOEUVRE_SIGMAS * math.sqrt(
-            self._covariance[0, 0] + MEASUREMENT_SIGMA**2
-        ):
-            self._covariance[1, 1] += INITIAL_VELOCITY_SIGMA**2
+        self._correct_radius(segment)
+        innovation = self._fitted_centre(segment) - self._position
+        self._allow_for_manoeuvre(math.hypot(*innovation))
         gain = self._covariance[:, 0] / (self._covariance[0, 0] + MEASUREMENT_SIGMA**2)
         self._position = self._position + gain[0] * innovation
         self._velocity = self._velocity + gain[1] * innovation
+        self._velocity = self._velocity * min(1.0, MAX_SPEED / max(math.hypot(*self._velocity), 1e-9))
         self._covariance = self._covariance - np.outer(gain, self._covariance[0])
         self.seen_at = self._stamp
         if self._covariance[1, 1] < MAX_VELOCITY_SIGMA**2:
@@ -120,9 +169,39 @@ class Track:
                 and math.dist(self._position, self._first_xy) >= MIN_TRAVEL
             )
             self.is_moving = (was_free and speed >= MIN_MOVING_SPEED) or has_travelled
-            self.is_static = not was_free and self.moved_at == -math.inf and not self.is_moving
+            is_old = self._stamp - self._first_stamp >= MAX_TRAVEL_TIME
+            has_never_moved = not was_free and self.moved_at == -math.inf and not self.is_moving
+            self.is_static = has_never_moved and (is_old or speed < MIN_TRAVEL_SPEED)
         if self.is_moving:
             self.moved_at = self._stamp
+
+    def _correct_radius(self, segment: ScanSegment) -> None:
+        """Correct the radius; one that was seen in part only was a lower bound, and the centre a guess."""
+        if segment.is_occluded or self.is_radius_known:
+            min_ratio = 1.0 if segment.is_occluded else MIN_RADIUS_RATIO
+            max_ratio = MAX_KNOWN_RADIUS_RATIO if self.is_radius_known else MAX_RADIUS_RATIO
+            self._radius *= min(max(segment.radius / self._radius, min_ratio), max_ratio)
+            return
+        self.is_radius_known = True
+        if segment.radius > self._radius:
+            self._radius, self._position = segment.radius, segment.centre_xy
+            self._covariance[1, 1] = max(self._covariance[1, 1], INITIAL_VELOCITY_SIGMA**2)
+
+    def _allow_for_manoeuvre(self, innovation: float) -> None:
+        """Make the velocity uncertain if the innovation [m] is too large for the track.
+
+        A moving object has turned since the last match, by as much as the innovation shows. The segment of
+        another one may have shifted because something occludes it.
+        """
+        if innovation <= MANOEUVRE_SIGMAS * math.sqrt(self._covariance[0, 0] + MEASUREMENT_SIGMA**2):
+            return
+        if not self.is_moving:
+            self._covariance[1, 1] += INITIAL_VELOCITY_SIGMA**2
+            return
+        dt = self._stamp - self.seen_at
+        motion = np.array([dt, 1.0])
+        added = max(INITIAL_VELOCITY_SIGMA**2, (innovation / dt) ** 2)
+        self._covariance = self._covariance + added * np.outer(motion, motion)
 
     def covers(self, points_xy: np.ndarray) -> np.ndarray:
         """Find the points on the object.

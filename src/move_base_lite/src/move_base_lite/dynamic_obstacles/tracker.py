@@ -3,30 +3,36 @@
 import math
 from collections import deque
 from dataclasses import replace
-from typing import Deque, List, NamedTuple, Optional
+from typing import Deque, Dict, List, NamedTuple, Optional, Sequence, Set
 
 import numpy as np
 from numpy.typing import NDArray
 
 from move_base_lite.costmap import Observation
-from move_base_lite.dynamic_obstacles.scan_segments import ScanSegment, ScanSnapshot, segments_of
-from move_base_lite.dynamic_obstacles.track import MIN_TRAVEL_SPEED, Track
+from move_base_lite.dynamic_obstacles.scan_segments import (
+    MIN_SEGMENT_BEAMS,
+    ScanSegment,
+    ScanSnapshot,
+    hidden_segment,
+    segments_of,
+)
+from move_base_lite.dynamic_obstacles.track import MIN_FREE_SHARE, MIN_TRAVEL_SPEED, Track
 from planar import Pose2
 from planar.deprecation import renamed_method
 
 # Age of the scan that segments are compared with [s], and its least age, below which nothing can be detected.
 REFERENCE_AGE, MIN_REFERENCE_AGE = 1.0, 0.3
-# Share of a segment's points that must lie in formerly free space.
-MIN_FREE_SHARE = 0.5
 # Time without a matching segment after which a track is dropped [s]: where the scan shows its place free, and
 # where the place is occluded or out of view.
-MAX_VISIBLE_AGE, MAX_OCCLUDED_AGE = 0.6, 2.5
+MAX_VISIBLE_AGE, MAX_OCCLUDED_AGE = 0.3, 2.5
 # Time without a matching segment after which a track matches newly appeared segments only [s].
 MAX_MATCH_AGE = 0.3
 # Time for which an object that has moved is removed from the scan [s].
 MOVING_MEMORY = 4.0
 # Age of the scan in which a newly appeared segment must be missing [s].
 APPEARANCE_AGE = 0.15
+# Distance from a track's predicted outline within which points of a wide segment may belong to it [m].
+OUTLINE_MARGIN = 0.2
 # An empty result of DynamicObstacleTracker.obstacles_at.
 NO_DYNAMIC_OBSTACLES = np.empty((0, 5))
 
@@ -73,6 +79,7 @@ class DynamicObstacleTracker:
         snapshot.segments = segments_of(snapshot)
         for track in self._tracks:
             track.predict(snapshot.stamp)
+        snapshot.segments = self._split_merged(snapshot.segments)
         self._associate(snapshot, settings.track_appearing)
         self._tracks = [
             track
@@ -102,15 +109,45 @@ class DynamicObstacleTracker:
         reference = self._reference_snapshot(snapshot.stamp)
         recent = self._snapshot_at(snapshot.stamp - MIN_REFERENCE_AGE)
         last = self._snapshot_at(snapshot.stamp - APPEARANCE_AGE)
-        for segment in snapshot.segments:
-            was_free = _was_free(segment, reference)
-            is_checked = track_appearing or bool(self._tracks)
-            is_new = was_free or (is_checked and _has_appeared(segment, snapshot.stamp, last))
-            track = self._matching_track(segment, -math.inf if is_new else snapshot.stamp - MAX_MATCH_AGE)
-            if track is not None:
-                track.correct(segment, was_free, was_free or _was_free(segment, recent))
-            elif was_free or (is_new and track_appearing):
+        is_checked = track_appearing or bool(self._tracks)
+        was_free = [_was_free(segment, reference) for segment in snapshot.segments]
+        is_new = [
+            is_free or (is_checked and _has_appeared(segment, snapshot.stamp, last))
+            for segment, is_free in zip(snapshot.segments, was_free)
+        ]
+        matches = self._matches(snapshot, is_new)
+        for i, segment in enumerate(snapshot.segments):
+            if i in matches:
+                track = matches[i]
+                is_free = was_free[i] or _was_free(segment, recent) or track.has_left_its_place(snapshot)
+                track.correct(segment, was_free[i], is_free)
+            elif was_free[i] or (is_new[i] and track_appearing):
                 self._tracks.append(Track(segment, snapshot.stamp))
+
+    def _split_merged(self, segments: List[ScanSegment]) -> List[ScanSegment]:
+        """Split segments of several objects among the tracks whose predicted outlines are near."""
+        parts: List[ScanSegment] = []
+        for segment in segments:
+            tracks = [track for track in self._tracks if track.is_narrower_than(segment)]
+            is_merged = any(track.is_radius_known for track in tracks)
+            parts += _parts(segment, tracks) if is_merged else [segment]
+        return parts
+
+    def _matches(self, snapshot: ScanSnapshot, is_new: Sequence[bool]) -> Dict[int, Track]:
+        """Tracks by the index of their segment: the nearest pairs first, each track and segment once."""
+        pairs = []
+        for i, segment in enumerate(snapshot.segments):
+            seen_since = -math.inf if is_new[i] else snapshot.stamp - MAX_MATCH_AGE
+            for j, track in enumerate(self._tracks):
+                if track.can_match(segment, seen_since):
+                    pairs.append((track.distance_to(segment), i, j))
+        matches: Dict[int, Track] = {}
+        taken: Set[int] = set()
+        for _, i, j in sorted(pairs):
+            if i not in matches and j not in taken:
+                matches[i] = self._tracks[j]
+                taken.add(j)
+        return matches
 
     def _without_moving_beams(self, snapshot: ScanSnapshot, ranges: np.ndarray) -> np.ndarray:
         """The ranges (N,), NaN where a beam ends on an object that has moved lately."""
@@ -131,15 +168,21 @@ class DynamicObstacleTracker:
         """The newest snapshot that is not newer than ``stamp``."""
         return next((snapshot for snapshot in reversed(self._past) if snapshot.stamp <= stamp), None)
 
-    def _matching_track(self, segment: ScanSegment, seen_since: float) -> Optional[Track]:
-        """The nearest track that the segment may belong to and that no other segment belongs to."""
-        candidates = [track for track in self._tracks if track.can_match(segment, seen_since)]
-        return min(candidates, key=lambda track: track.distance_to(segment)) if candidates else None
-
 
 def _was_free(segment: ScanSegment, before: Optional[ScanSnapshot]) -> bool:
     """Whether the segment lies in what was free space in an earlier snapshot."""
     return before is not None and before.free_share(segment.points_xy) >= MIN_FREE_SHARE
+
+
+def _parts(segment: ScanSegment, tracks: List[Track]) -> List[ScanSegment]:
+    """Split a segment into the points nearest to each track's outline, and the others."""
+    distances = np.array([track.boundary_distance(segment.points_xy) for track in tracks])
+    owner = np.where(distances.min(axis=0) < OUTLINE_MARGIN, distances.argmin(axis=0), len(tracks))
+    groups = [segment.points_xy[owner == i] for i in range(len(tracks) + 1)]
+    groups = [group for group in groups if len(group) >= MIN_SEGMENT_BEAMS]
+    if len(groups) < 2:
+        return [segment]
+    return [hidden_segment(group) for group in groups]
 
 
 def _has_appeared(segment: ScanSegment, stamp: float, before: Optional[ScanSnapshot]) -> bool:
