@@ -11,7 +11,7 @@ import yaml
 from amcl_lite import Localizer
 from amcl_lite.config import LocalizerSettings, NodeSettings
 from amcl_lite.ineffective import parameters_without_effect
-from planar import OccupancyGrid, Pose2, Scan, grid_from_picture
+from planar import Pose2, Scan, grid_from_picture
 from planar.config.parameters import official_names, parameters_of
 from planar.config.settings import settings_from
 from planar.geometry.ray_casting import cast_rays
@@ -100,8 +100,7 @@ FIELDS = official_names(LocalizerSettings)
 
 def particles(settings):
     """Particles after a short drive with a stop, at the end beside a person who is not in the map."""
-    cells = grid_from_picture(ROOM).cells
-    grid = OccupancyGrid(np.kron(cells, np.ones((5, 5), dtype=np.int8)), 0.05)
+    grid = grid_from_picture(ROOM, 0.05, scale=5)
     pose, odometry, rng = Pose2(1.0, 0.8, 0.2), Pose2(), np.random.default_rng(3)
     angles = -math.pi + np.arange(BEAMS) * 2.0 * math.pi / BEAMS
     localizer = Localizer(grid, settings, np.random.default_rng(1))

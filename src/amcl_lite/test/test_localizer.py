@@ -48,8 +48,7 @@ CIRCLE = [Pose2(0.15, 0.0, 0.2)]
 
 
 def home():
-    cells = grid_from_picture(HOME).cells
-    return OccupancyGrid(np.kron(cells, np.ones((8, 8), dtype=np.int8)), 0.05)
+    return grid_from_picture(HOME, 0.05, scale=8)
 
 
 def way(*legs):

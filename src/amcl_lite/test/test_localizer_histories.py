@@ -12,7 +12,7 @@ from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, ru
 from amcl_lite import LocalizationError, Localizer, LocalizerSettings
 from amcl_lite.config import InitialPose
 from amcl_lite.localizer import is_valid_initial_pose
-from planar import OccupancyGrid, Pose2, Scan, grid_from_picture
+from planar import Pose2, Scan, grid_from_picture
 from planar.geometry.limits import MAX_COORDINATE
 from planar.geometry.ray_casting import cast_rays
 
@@ -31,9 +31,7 @@ ROOM_PICTURE = """
 
 
 def grid_of(picture, origin=Pose2()):
-    return OccupancyGrid(
-        np.kron(grid_from_picture(picture).cells, np.ones((4, 4), dtype=np.int8)), 0.05, origin
-    )
+    return grid_from_picture(picture, 0.05, origin, scale=4)
 
 
 ROOM = grid_of(ROOM_PICTURE)

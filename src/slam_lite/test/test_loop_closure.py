@@ -9,10 +9,10 @@ import pytest
 from planar import Pose2, wrap
 from slam_lite.config import MapperSettings
 from slam_lite.graph.drift import variances_xy
-from slam_lite.graph.pose_graph import edges_of
+from slam_lite.graph.pose_graph import Edge, edges_of
 from slam_lite.loops.degeneracy import constraint_at_peak, refine_at
-from slam_lite.loops.loop_candidates import LoopCandidate
-from slam_lite.loops.loop_closure import agree, contradict
+from slam_lite.loops.loop_candidates import LoopCandidate, count_alternatives
+from slam_lite.loops.loop_closure import LoopClosure, LoopClosureVerifier, agree, contradict
 from slam_lite.loops.loop_search import find_loop_closure
 from slam_lite.matching.correlative import Peak, SearchWindow, search_branch_and_bound
 from slam_lite.matching.local_map import LocalMap
@@ -165,3 +165,50 @@ def test_the_other_side_of_a_wall_does_not_measure_its_distance():
     )
     off = found.base_in_place.as_array()
     assert off @ found.information @ off < 4.0
+
+
+STREET = np.array([(0.5 * i, 40.0 if i >= 200 else 0.0, 0.0) for i in range(300)])
+
+
+def recognized(number, ratio, alternatives):
+    """A loop closure between two parallel streets that look alike, found by place recognition alone."""
+    window = SearchWindow(4.0, 0.15)
+    candidate = LoopCandidate(number, 200 + number, 39, window, 3.0, Pose2(), True, alternatives)
+    edge = Edge(number, 200 + number, Pose2(), 100.0 * np.eye(3), is_loop=True)
+    return LoopClosure(edge, candidate, np.zeros(2), ratio)
+
+
+@pytest.mark.parametrize(
+    "ratios, alternatives, is_accepted",
+    [
+        ((1.2, 2.3, 3.0), 3000.0, False),  # a room that looks like another one, 215 m away
+        ((1.2, 2.3, 3.0), 30.0, True),
+        ((3.5, 3.5, 3.5), 3000.0, True),
+    ],
+)
+def test_recognized_places_must_outweigh_the_number_of_places_where_the_robot_may_be(
+    ratios, alternatives, is_accepted
+):
+    closures = [recognized(n, ratio, alternatives) for n, ratio in zip((0, 14, 28), ratios)]
+    verifier = LoopClosureVerifier(STREET, edges_of())
+    assert bool(verifier.verify(closures[-1], closures[:-1])) == is_accepted
+
+
+def test_loop_closures_of_one_keyframe_to_several_places_count_once():
+    first, second, last = (recognized(n, 3.5, 3000.0) for n in (0, 14, 28))
+    same_scan = dataclasses.replace(
+        second, edge=dataclasses.replace(first.edge, first=1, second_in_first=Pose2(-0.5))
+    )
+    verifier = LoopClosureVerifier(STREET, edges_of())
+    assert not verifier.verify(last, [first, same_scan])
+    assert verifier.verify(last, [first, second])
+
+
+def test_alternatives_are_the_places_and_headings_within_the_drift():
+    places, drift = np.arange(0, 100, 10), np.tile([2.0, 0.01], (10, 1))
+    # Within 1.5 * 2 m + 4 m of keyframe 50, 25 m along the street: those at 20, 25 and 30 m.
+    assert count_alternatives(50, places, STREET, drift) == 3.0
+    assert count_alternatives(50, places, STREET, np.tile([2.0, 9.0], (10, 1))) == pytest.approx(
+        3.0 * np.pi / 0.15
+    )
+    assert count_alternatives(250, places, STREET, drift) == 0.0

@@ -10,7 +10,7 @@ from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
 
-from planar import OCCUPIED, OccupancyGrid, Pose2, Scan, grid_from_picture
+from planar import OCCUPIED, Pose2, Scan, grid_from_picture
 from planar.errors import OutOfRangeError
 from planar.geometry.ray_casting import cast_rays
 from slam_lite.config import MapperSettings
@@ -31,7 +31,7 @@ ROOM_PICTURE = """
 #..........#.......#
 ####################
 """
-ROOM = OccupancyGrid(np.kron(grid_from_picture(ROOM_PICTURE).cells, np.ones((4, 4), dtype=np.int8)), 0.05)
+ROOM = grid_from_picture(ROOM_PICTURE, 0.05, scale=4)
 START = Pose2(1.0, 0.8, 0.3)
 BEAMS, RANGE_MAX = 90, 5.0
 SETTINGS = MapperSettings(keyframe_distance=0.1, still_interval=0.3)

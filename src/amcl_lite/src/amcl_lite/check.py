@@ -13,13 +13,13 @@ from amcl_lite.motion.motion_model import motion_model_of
 from amcl_lite.sensor.beams import Beams, evenly_spaced_beams
 from amcl_lite.sensor.custom_model import CONTRACT as SENSOR
 from amcl_lite.sensor.scan_likelihood import ScanLikelihood
-from planar import OccupancyGrid, Pose2, Scan, grid_from_picture, wrap
+from planar import Pose2, Scan, grid_from_picture, wrap
 from planar.deprecation import deprecated_names
 from planar.extensions.check import expect, expect_unchanged, run_checks, same_results, suite
 from planar.geometry.ray_casting import cast_rays
 
-ROOM = grid_from_picture("##########\n#........#\n#........#\n#....#...#\n#....#####\n##########", 0.5)
-GRID = OccupancyGrid(np.kron(ROOM.cells, np.ones((10, 10), np.int8)), 0.05)
+ROOM = "##########\n#........#\n#........#\n#....#...#\n#....#####\n##########"
+GRID = grid_from_picture(ROOM, 0.05, scale=10)
 TRUE_POSE = Pose2(1.2, 1.6, 0.4)
 ANGLES, RANGE_MAX = np.linspace(-np.pi, np.pi, 90, endpoint=False), 10.0
 # Motion of the odometry, and the largest mean deviation of the particles from it [m, rad].

@@ -32,7 +32,7 @@ def _check_plugins(settings: "LocalizerSettings") -> None:
     for parameter_name, contract in (("motion_plugin", MOTION_MODEL), ("sensor_plugin", SENSOR_MODEL)):
         name = getattr(settings, parameter_name)
         if name:
-            contract.check_name(parameter_name, name)
+            contract.load_required(name, parameter_name)
 
 
 @dataclass(frozen=True)

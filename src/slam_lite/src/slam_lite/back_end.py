@@ -33,6 +33,7 @@ from slam_lite.loops.loop_candidates import (
     LoopCandidate,
     are_outside_search_windows,
     candidate_at_recognized_place,
+    count_alternatives,
     edge_lengths,
     is_within_drift,
     loop_candidates,
@@ -172,30 +173,43 @@ class ClosureTask:
         segment = places.next_segment(travelled)
         while segment is not None:
             descriptor = segment.descriptor(self.clouds, self.poses)
-            hypotheses = [] if descriptor is None else self._match_credible_places(descriptor, places)
+            hypotheses: List[PlaceHypothesis] = []
+            alternatives = 1.0
+            if descriptor is not None:
+                hypotheses, alternatives = self._match_credible_places(descriptor, places)
             confirmed = places.confirmed(hypotheses, self.poses)
             step = relative_pose(self.poses, segment.middle, segment.last)
             count = segment.last - segment.first + 1
             candidates = [
-                candidate_at_recognized_place(one.place, segment.last, count, one.recent_in_place @ step)
+                candidate_at_recognized_place(
+                    one.place, segment.last, count, one.recent_in_place @ step, alternatives
+                )
                 for one in confirmed[:_MAX_RECOGNIZED]
             ]
             places = places.extended(segment, descriptor, hypotheses)
             segment = places.next_segment(travelled)
         return places, candidates
 
-    def _match_credible_places(self, recent: PlaceDescriptor, places: PlaceDatabase) -> List[PlaceHypothesis]:
-        """Match places that the graph's drift allows, outside of the windows of the other search."""
+    def _match_credible_places(
+        self, recent: PlaceDescriptor, places: PlaceDatabase
+    ) -> Tuple[List[PlaceHypothesis], float]:
+        """Match places that the graph's drift allows, outside of the windows of the other search.
+
+        Returns:
+            The hypotheses, and the number of places and headings that were possible.
+        """
         paths, before = shortest_paths(recent.keyframe, len(self.poses), self.edges, edge_lengths(self.edges))
         drift = np.column_stack(drift_along(paths, before, self.poses, with_average_slip(self.edges)))
         keyframes = [descriptor.keyframe for descriptor in places.descriptors]
         are_outside = are_outside_search_windows(paths[keyframes], drift[keyframes])
         outside = [each for each, is_outside in zip(places.descriptors, are_outside) if is_outside]
-        return [
+        indices = np.array([each.keyframe for each in outside], dtype=np.int64)
+        hypotheses = [
             hypothesis
             for hypothesis in match_places(recent, outside)
             if is_within_drift(hypothesis, self.poses, drift[hypothesis.place])
         ]
+        return hypotheses, count_alternatives(recent.keyframe, indices, self.poses, drift[indices])
 
     def _needs_optimization(self, edges: Sequence[Edge]) -> bool:
         if not edges:

@@ -7,7 +7,7 @@ import sys
 
 import numpy as np
 
-from planar import OccupancyGrid, Pose2, Scan, grid_from_picture, wrap
+from planar import Pose2, Scan, grid_from_picture, wrap
 from planar.deprecation import deprecated_names
 from planar.extensions.check import expect, run_checks, same_results, suite
 from planar.geometry.ray_casting import cast_rays
@@ -59,8 +59,7 @@ def accepts_scans_without_points(settings: MapperSettings) -> None:
 
 
 def _seen(picture: str, base: Pose2) -> PointCloud:
-    coarse = grid_from_picture(picture, 0.5)
-    grid = OccupancyGrid(np.kron(coarse.cells, np.ones((10, 10), np.int8)), 0.05)
+    grid = grid_from_picture(picture, 0.05, scale=10)
     ranges = cast_rays(grid, base, ANGLES, 2.0 * RANGE_MAX).astype(np.float32)
     scan = Scan(0.0, ANGLES[0], ANGLES[1] - ANGLES[0], ranges, 0.05, RANGE_MAX)
     return point_cloud_of(scan, RANGE_MAX, MapperSettings().point_spacing)

@@ -120,7 +120,7 @@ class MapperSettings:
             within = f"at most maxRange ({self.max_range:g})"
             check(self.usable_range <= self.max_range, "usable_range", within, self.usable_range)
         if self.matcher_plugin:
-            CONTRACT.check_name("matcher_plugin", self.matcher_plugin)
+            CONTRACT.load_required(self.matcher_plugin, "matcher_plugin")
 
 
 @dataclass(frozen=True)

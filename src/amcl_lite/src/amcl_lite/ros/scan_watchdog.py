@@ -11,11 +11,15 @@ _CHECK_SECONDS = 1.0
 
 
 class ScanWatchdog:
-    """Warns repeatedly while no scan arrives on ``topic`` for ``SCAN_TIMEOUT_SECONDS``."""
+    """Warns repeatedly while no scan arrives on ``topic`` for ``SCAN_TIMEOUT_SECONDS``.
+
+    Simulated time may jump, and the next scans arrive a moment later; so a scan since the last check proves
+    that they come.
+    """
 
     def __init__(self, topic: str):
         self._topic = topic
-        self._last_scan = self._last_warned = rospy.Time(0)
+        self._last_scan = self._last_warned = self._checked_scan = rospy.Time(0)
 
     def start(self) -> None:
         self.on_scan()
@@ -28,12 +32,16 @@ class ScanWatchdog:
     def _watch(self):
         while not rospy.is_shutdown():
             time.sleep(_CHECK_SECONDS)
-            now = rospy.Time.now()
-            if self._last_warned == rospy.Time(0):  # there was no clock yet
-                self.on_scan()
-            elif (now - self._last_warned).to_sec() > SCAN_TIMEOUT_SECONDS:
-                self._last_warned = now
-                self._warn((now - self._last_scan).to_sec())
+            self.check(rospy.Time.now())
+
+    def check(self, now: rospy.Time) -> None:
+        """Warn if no scan has arrived for long."""
+        is_silent, self._checked_scan = self._last_scan == self._checked_scan, self._last_scan
+        if self._last_warned == rospy.Time(0):  # there was no clock yet
+            self.on_scan()
+        elif is_silent and (now - self._last_warned).to_sec() > SCAN_TIMEOUT_SECONDS:
+            self._last_warned = now
+            self._warn((now - self._last_scan).to_sec())
 
     def _warn(self, silence: float):
         rospy.logwarn(

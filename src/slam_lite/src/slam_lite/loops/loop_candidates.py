@@ -5,6 +5,7 @@ the straight line (E. Olson, "Recognizing places using spectrally clustered loca
 of the search windows of these, candidates come from place recognition.
 """
 
+import math
 from dataclasses import dataclass
 from typing import List
 
@@ -50,6 +51,7 @@ class LoopCandidate:
         scale: Factor by which more keyframes are merged than for a small window.
         guess: Estimated pose of the recent keyframe in the older one.
         is_recognized: Whether the guess comes from place recognition instead of the graph.
+        alternatives: Number of places and headings, a search window each, that might have been recognized.
     """
 
     place: int
@@ -59,6 +61,7 @@ class LoopCandidate:
     scale: float
     guess: Pose2
     is_recognized: bool = False
+    alternatives: float = 1.0
 
     @property
     def is_ambiguous(self) -> bool:
@@ -102,7 +105,7 @@ def loop_candidates(
 
 
 def candidate_at_recognized_place(
-    place: int, recent: int, recent_keyframes: int, recent_in_place: Pose2
+    place: int, recent: int, recent_keyframes: int, recent_in_place: Pose2, alternatives: float
 ) -> LoopCandidate:
     """Create the candidate of a recognized place, independent of the graph.
 
@@ -111,9 +114,11 @@ def candidate_at_recognized_place(
         recent: Index of the recent keyframe.
         recent_keyframes: Number of keyframes up to the recent one that are merged for the match.
         recent_in_place: Pose of the recent keyframe in the older one, from place recognition.
+        alternatives: Number of places and headings that might have been recognized.
     """
+    window = _RECOGNITION_WINDOW
     return LoopCandidate(
-        place, recent, recent_keyframes, _RECOGNITION_WINDOW, _MAX_SCALE, recent_in_place, True
+        place, recent, recent_keyframes, window, _MAX_SCALE, recent_in_place, True, alternatives
     )
 
 
@@ -152,6 +157,23 @@ def is_within_drift(hypothesis: PlaceHypothesis, poses: np.ndarray, drift: np.nd
     is_near = measured.distance_to(estimated) < _MAX_SIGMAS * drift[0] + _RECOGNITION_WINDOW.distance
     turn = abs(wrap(measured.yaw - estimated.yaw))
     return bool(is_near and turn < _MAX_SIGMAS * drift[1] + _RECOGNITION_WINDOW.angle)
+
+
+def count_alternatives(recent: int, places: np.ndarray, poses: np.ndarray, drift: np.ndarray) -> float:
+    """Count the places, in search windows of their headings, at which a keyframe may be by the graph's drift.
+
+    Args:
+        recent: Index of the keyframe.
+        places: (M,), indices of the places' keyframes.
+        poses: (N, 3), poses of all keyframes in the map frame.
+        drift: (M, 2), standard deviations of position [m] and heading [rad] from each place.
+    """
+    distances = np.hypot(*(poses[places, :2] - poses[recent, :2]).T)
+    is_near = distances < _MAX_SIGMAS * drift[:, 0] + _RECOGNITION_WINDOW.distance
+    headings = (
+        np.clip(_MAX_SIGMAS * drift[:, 1], _RECOGNITION_WINDOW.angle, math.pi) / _RECOGNITION_WINDOW.angle
+    )
+    return float(headings[is_near].sum())
 
 
 def edge_lengths(edges: Edges) -> np.ndarray:

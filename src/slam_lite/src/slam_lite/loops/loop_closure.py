@@ -1,14 +1,15 @@
 """Loop closure verification: which loop closures are accepted into the pose graph.
 
 A loop closure is accepted at once only if the graph already knew the place to within a small window.
-Otherwise a second consistent one nearby has to confirm it, and two more if the place was found by place
-recognition alone.
+Otherwise a second consistent one nearby has to confirm it. If the place was found by place recognition alone,
+two have to, and together they have to outweigh the number of places that might have been recognized: the more
+a robot has mapped, the more likely two of them look alike.
 """
 
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Sequence, Tuple
+from typing import Dict, Sequence, Tuple
 
 import numpy as np
 
@@ -181,11 +182,22 @@ def contradict(one: LoopClosure, other: LoopClosure, poses: np.ndarray) -> bool:
 
 
 def _is_confirmed(closure: LoopClosure, witnesses: Sequence[LoopClosure], poses: np.ndarray) -> bool:
-    """Whether enough others are consistent; for a recognized place, one of them must be far away."""
+    """Whether enough others are consistent.
+
+    For a recognized place, one of them must be far away, and the likelihood ratio of all together must exceed
+    the number of alternatives.
+    """
     if len(witnesses) < closure.witnesses_needed:
         return False
+    if not closure.candidate.is_recognized:
+        return True
     distances = [_disagreement(closure, other, poses)[0] for other in witnesses]
-    return not closure.candidate.is_recognized or max(distances) >= _MIN_RECOGNIZED_DISTANCE
+    # Loop closures of one keyframe to several places nearby are not independent.
+    best: Dict[int, float] = {}
+    for one in (closure, *witnesses):
+        best[one.edge.second] = max(best.get(one.edge.second, 0.0), one.log_likelihood_ratio)
+    is_likely = sum(best.values()) >= math.log(max(closure.candidate.alternatives, 1.0))
+    return max(distances) >= _MIN_RECOGNIZED_DISTANCE and is_likely
 
 
 def _disagreement(
