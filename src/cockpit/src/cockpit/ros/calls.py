@@ -7,10 +7,11 @@ import rospy
 
 from cockpit.errors import CockpitError
 from planar_ros.calls.services import ServiceError, call_service
+from planar_ros.node.topics import unconnected_subscribers
 
 # Time-outs for a service to appear, for its response, and for a slow response [s].
 SERVICE_SECONDS, ANSWER_SECONDS, LONG_SECONDS = 1.0, 10.0, 60.0
-LISTENER_SECONDS, POLL_SECONDS = 1.0, 0.02
+CONNECT_SECONDS, POLL_SECONDS = 5.0, 0.02
 
 
 def call(name: str, kind: Any, *arguments: Any, seconds: float = ANSWER_SECONDS) -> Any:
@@ -34,13 +35,17 @@ def call(name: str, kind: Any, *arguments: Any, seconds: float = ANSWER_SECONDS)
         raise CockpitError(str(error)) from None
 
 
-def wait_for_subscribers(publisher: rospy.Publisher, listeners: int) -> None:
-    """Wait until subscribers are connected, for LISTENER_SECONDS at most.
+def wait_for_subscribers(publisher: rospy.Publisher) -> None:
+    """Wait until every node that subscribes to the topic is connected.
 
-    Args:
-        publisher: The publisher.
-        listeners: Number of subscribers to wait for.
+    Raises:
+        CockpitError: A subscriber did not connect within CONNECT_SECONDS.
     """
-    deadline = time.monotonic() + LISTENER_SECONDS
-    while time.monotonic() < deadline and publisher.get_num_connections() < listeners:
+    deadline = time.monotonic() + CONNECT_SECONDS
+    while missing := unconnected_subscribers(publisher):
+        if time.monotonic() > deadline:
+            raise CockpitError(
+                f"{', '.join(missing)}: subscribed to {publisher.resolved_name}, but did not connect within "
+                f"{CONNECT_SECONDS:g} s; nothing was sent, try again"
+            )
         time.sleep(POLL_SECONDS)

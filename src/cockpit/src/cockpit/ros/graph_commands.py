@@ -19,6 +19,7 @@ from cockpit.frames import inverse, pose_from_message
 from cockpit.models.pointing import quaternion_of
 from cockpit.ros.calls import call, wait_for_subscribers
 from cockpit.ros.graph import GraphClient
+from rospy_transport.connections import is_connected
 
 GOAL, ESTIMATE, POINT = "move_base_simple/goal", "initialpose", "clicked_point"
 CANCEL = "move_base/cancel"
@@ -246,10 +247,9 @@ class GraphCommands:
         if topic not in self._publishers:
             self._publishers[topic] = rospy.Publisher(topic, type(message), queue_size=1)
         publisher = self._publishers[topic]
-        wait_for_subscribers(
-            publisher, len(self._graph.subscribers().get(topic, ())) or int(needs_subscriber)
-        )
-        if needs_subscriber and not publisher.get_num_connections():
+        wait_for_subscribers(publisher)
+        others = publisher.get_num_connections() - is_connected(publisher, rospy.get_name())
+        if needs_subscriber and not others:
             raise CockpitError(f"no node subscribes to {topic}")
         publisher.publish(message)
 

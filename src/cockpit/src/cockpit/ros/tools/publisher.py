@@ -99,7 +99,7 @@ class PublisherTool:
                 self._publisher = None
                 raise CockpitError(f"{topic}: {error}") from None
             else:
-                wait_for_subscribers(self._publisher, len(self._context.graph.subscribers().get(topic, ())))
+                wait_for_subscribers(self._publisher)
         self._message = message
 
     def _publish(self) -> None:
