@@ -2,6 +2,7 @@
 """Scenarios run as a graph of ROS nodes."""
 
 import csv
+import json
 import os
 import signal
 import subprocess
@@ -14,7 +15,17 @@ import rostest
 from processes import processes_with
 from waiting import wait_until
 
-SCRIPT = Path(__file__).resolve().parents[2] / "scripts/evaluate.sh"
+from evaluation.verdict import ARRIVAL_TOLERANCE
+
+ROOT = Path(__file__).resolve().parents[2]
+SCRIPT = ROOT / "scripts/evaluate.sh"
+# The first 25 minutes of a day in which seed 7 has two deliveries, the second with a deadline.
+DAY = f"""
+world: {{file: {ROOT}/map/home.world, map: {ROOT}/map/home.yaml}}
+task: {{service_day: 40, mission: {ROOT}/map/mission.yaml, dock: {{x: -1.5, y: -3.2, yaw: 1.57}}}}
+happens: {{boxes: 1, moves: 2, people: 1}}
+limits: {{seconds: 1500}}
+"""
 MOVE_BASE = "__name:=move_base"
 RUN_SECONDS, START_SECONDS, END_SECONDS, LEFT_SECONDS = 200.0, 90.0, 60.0, 20.0
 
@@ -32,6 +43,28 @@ class OverRosTest(unittest.TestCase):
         self.assertEqual(row["outcome"], "success", output)
         self.assertLess(float(row["localization_max"]), 0.2)
         self.assertGreater(float(row["driven"]), 0.9 * float(row["way"]))
+
+    def test_a_day_of_service_is_run_and_judged_by_its_journal(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scenario = Path(folder, "day.yaml")
+            scenario.write_text(DAY, encoding="utf-8")
+            words = [str(SCRIPT.with_name("play.sh")), str(scenario), "--seed", "7", "--over", "ros"]
+            done = subprocess.run(
+                [*words, "--output", folder], capture_output=True, text=True, timeout=RUN_SECONDS
+            )
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            (result,) = (json.loads(path.read_text()) for path in Path(folder).glob("*/result.json"))
+            (page,) = (path.read_text(encoding="utf-8") for path in Path(folder).glob("*/day.html"))
+        self.assertEqual((result["score"], result["collisions"]), (1.0, []))
+        self.assertIn("1 of 1 deadlines kept", result["reason"])
+        self.assertGreaterEqual(result["simulated_seconds"], 1500.0)
+        self.assertEqual(page.count("<td>completed</td>"), 2)
+        errors = [
+            delivery[f"{end}_error"] for delivery in result["deliveries"] for end in ("pickup", "dropoff")
+        ]
+        self.assertEqual(len(errors), 4)
+        self.assertLess(max(errors), ARRIVAL_TOLERANCE)
+        self.assertNotIn("was refused", page)
 
     def test_a_campaign_that_is_interrupted_leaves_no_process(self):
         mark = str(uuid.uuid4())

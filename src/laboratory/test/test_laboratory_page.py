@@ -78,6 +78,8 @@ def test_the_command_of_a_run_over_ros_has_its_options():
     official = replace(SCENARIO.with_planner("official"), is_over_ros=True)
     command = "./scripts/play.sh home_errand --seed 5 --planner official --over ros"
     assert repeat_command(official, 5) == command
+    both = replace(official, localizer="official")
+    assert repeat_command(both, 5) == command.replace("--over", "--localizer official --over")
 
 
 def test_a_comparison_is_described_in_one_line():

@@ -69,6 +69,21 @@ def test_the_official_move_base_runs_only_over_ros_and_only_if_installed(tmp_pat
     assert "planner" not in arguments
 
 
+def test_the_official_amcl_runs_only_over_ros_and_only_if_installed(tmp_path, monkeypatch):
+    with pytest.raises(SettingsError, match="localizer official runs only over ROS; add --over ros"):
+        load_suites(["home_errand"], localizer="official")
+    monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path))
+    with pytest.raises(SettingsError, match="localizer official: the official amcl is not installed"):
+        load_suites(["home_errand"], is_over_ros=True, localizer="official")
+    (tmp_path / "package.xml").write_text("<package><name>amcl</name></package>")
+    (scenario,), _ = load_suites(["home_errand"], is_over_ros=True, localizer="official")
+    assert write_launch_files(scenario, 0, tmp_path)["amcl_pkg"] == "amcl"
+    assert scenario.label == "home_errand [official amcl] over ROS"
+    ours = replace(scenario, localizer="")
+    assert scenario.digest() != ours.digest()
+    assert "amcl_pkg" not in write_launch_files(ours, 0, tmp_path)
+
+
 def test_the_reference_length_does_not_depend_on_the_planner():
     ours = read_scenario(ERRAND)
     arena, official = ours.arena(0), replace(ours, planner=OFFICIAL, is_over_ros=True)

@@ -10,7 +10,7 @@ from laboratory.scenario import read_scenario
 from laboratory.suites import FOLDER
 from laboratory.tasks.odom_goal import OdomGoalTask
 from laboratory.tasks.shortest_paths import ShortestPaths
-from laboratory.worlds.boxes import BOX_SPACING, SIZE
+from laboratory.worlds.boxes import BOX_SPACING, MOVE_DISTANCE, SIZE
 from laboratory.worlds.files import WorldFile
 from planar import Pose2, grid_from_picture
 from sim_bridge import SimulationSettings
@@ -62,6 +62,17 @@ def test_faults_also_apply_without_a_map():
     ahead = replace(home, world=source, robot="jackal", simulation=rates, task=task, faults=(carried,))
     run = ahead.task.run(ahead, ahead.arena(5), 5)
     assert np.hypot(*np.diff(run.trajectory[:, 1:3], axis=0).T).max() > 0.3
+
+
+def test_boxes_are_moved_near_to_where_they_stood():
+    arena = replace(read_scenario(ERRAND), boxes=2, moves=9, seconds=100.0).arena(3)
+    boxes = {body.model: body.pose_in_world[:2, 3] for body in arena.world.bodies if "box_" in body.name}
+    moves = arena.world.moves
+    assert [move.stamp for move in moves] == sorted(move.stamp for move in moves)
+    assert len(moves) == 9 and {move.model for move in moves} == set(boxes)
+    for move in moves:
+        assert 0.0 <= move.stamp <= 100.0
+        assert np.abs(boxes[move.model] - (move.pose.x, move.pose.y)).max() <= MOVE_DISTANCE
 
 
 def test_boxes_keep_their_distance_and_leave_goals_free():

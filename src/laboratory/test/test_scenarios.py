@@ -54,6 +54,7 @@ def test_every_key_of_a_scenario_is_read(tmp_path):
         ("range_noise: 0.02", "range_noise: -1", "range_noise must be not negative, got -1"),
         ("range_noise", "rainge_noise", ':4: unknown key "simulation.rainge_noise"'),
         ("task: {errand", "task: {errant", ":5: task needs one of errand"),
+        ("boxes: 3", "moves: 3", ":7: happens.moves needs boxes that are moved: add boxes"),
         ("boxes: 3", "boxes: many", ":7: happens.boxes must be a whole number"),
         ("scan_noisy", "scan_nosy", ":8: happens.faults[1].kind must be one of"),
         ("max_vel_x: 0.4", "max_vel_x: fast", "max_vel_x must be a number, got 'fast'"),

@@ -88,6 +88,16 @@ def test_states_that_end_a_mission_have_the_colours_of_their_meaning():
     assert ".delivered { --tone: var(--good); } .failed { --tone: var(--bad); }" in style
 
 
+def test_the_legend_of_a_long_timeline_lists_each_state_once():
+    states = [StateEvent(10.0 * n, ("driving", "docking")[n % 2]) for n in range(50)]
+    page = timeline(states, 505.0)
+    assert re.findall(r"<li class=.tone\d.>(\w+) <small>([^<]*)", page) == [
+        ("driving", "25 x, 250 s"),
+        ("docking", "25 x, 255 s"),
+    ]
+    assert page.count("<i class=") == 50
+
+
 def test_a_delivery_shows_its_retries_instead_of_the_goals_that_it_needs_anyway(record, result):
     deliveries = [{"name": "tea", "attempts": 2, "retries": 0}, {"name": "cup", "attempts": 5, "retries": 3}]
     text = Page(report_html({**result, "deliveries": deliveries}, record)).text

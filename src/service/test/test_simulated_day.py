@@ -1,8 +1,5 @@
 """Days of service in the simulator, in one process."""
 
-from collections import deque
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -10,9 +7,8 @@ from headless_mission import NAVIGATION_CONFIG, EpisodeConditions
 from planar import Pose2
 from planar.maps.places import NamedPlace
 from service.day.day_report import day_report
-from service.day.preparation import MIDNIGHT, DayPlan, furniture_moves, prepare_day
-from service.day.requests_by_hour import DaySettings, TimedRequest
-from service.day.simulated_day import FurnitureMove
+from service.day.preparation import MIDNIGHT, DayPlan, prepare_day
+from service.requests.timed_requests import TimedRequest
 from service.task import TaskStatus
 from sim_bridge import SimulationSettings, robot_named
 from sim_bridge.geometry.shapes import Plane
@@ -42,17 +38,14 @@ DOCK = Pose2(-2.9, 0.0)
 HOUR = 3600.0
 
 
-def plan(**values):
+def plan():
     grid = true_map(ROOM)
-    requests = DaySettings(requests=0)
-    return DayPlan(ROOM, robot_named("turtlebot_lidar"), grid, PLACES, DOCK, requests, **values)
+    return DayPlan(ROOM, robot_named("turtlebot_lidar"), grid, PLACES, DOCK)
 
 
-def day(requests, seed=1, settings=SimulationSettings(), furniture=(), **values):
+def day(requests, seed=1, settings=SimulationSettings()):
     conditions = EpisodeConditions(simulation=settings)
-    made = prepare_day(plan(**values), conditions.navigation(NAVIGATION_CONFIG), conditions, seed)
-    made._service._coming, made._furniture = deque(requests), list(furniture)
-    return made
+    return prepare_day(plan(), requests, conditions.navigation(NAVIGATION_CONFIG), conditions, seed)
 
 
 def request(hours, text, minutes=10.0):
@@ -83,19 +76,3 @@ def test_a_robot_that_cannot_charge_stands_with_an_empty_battery():
     record = day([request(0.01, "wait 1h at desk", 100.0)], settings=settings).run(MIDNIGHT + HOUR)
     assert record.empty_at is not None and record.lowest_charge == 0.0
     assert not record.kept
-
-
-def test_furniture_is_moved_where_the_robot_is_not():
-    made = day((), furniture=[FurnitureMove(MIDNIGHT + 60.0, "pillar", Pose2(-2.6, 0.2))])
-    made.run(MIDNIGHT + 120.0)
-    models = made._episode.simulation.scene.models
-    assert models.state("pillar").pose[0, 3] == pytest.approx(0.5)
-    made._furniture = [replace(made._furniture[0], pose=Pose2(1.0, 1.0))]
-    made.run(MIDNIGHT + 240.0)
-    assert models.state("pillar").pose[:2, 3] == pytest.approx((1.0, 1.0))
-
-
-def test_furniture_stays_near_its_place():
-    moves = furniture_moves(plan(furniture={"pillar": Pose2(1.0, 1.0)}, moves=9), np.random.default_rng(0))
-    assert len(moves) == 9 and [move.stamp for move in moves] == sorted(move.stamp for move in moves)
-    assert all(move.pose.distance_to(Pose2(1.0, 1.0)) < 0.5 for move in moves)

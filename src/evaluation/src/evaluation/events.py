@@ -222,6 +222,17 @@ class StateUpdated(RunEvent):
 
 
 @dataclass(frozen=True)
+class ServiceUpdated(RunEvent):
+    """State of the service.
+
+    Attributes:
+        charge: Charge of the battery, 0 to 1; None if it is not known.
+    """
+
+    charge: Optional[float]
+
+
+@dataclass(frozen=True)
 class MarkerUpdated(RunEvent):
     """A marker was published.
 

@@ -5,7 +5,7 @@ from typing import Any, List, Tuple
 
 import numpy as np
 
-from laboratory.worlds.custom import CONTRACT, CustomWorlds, load_generator
+from laboratory.worlds.custom import CONTRACT, CustomWorlds
 from laboratory.worlds.source import Arena, WorldSource
 from planar import FREE
 from planar.deprecation import deprecated_names
@@ -60,7 +60,7 @@ def _first_scans(arena: Arena) -> bytes:
 def _load_source(name: str) -> CustomWorlds:
     """Load a generator with the default values of its fields. Raises PluginError if one has no default."""
     try:
-        return CustomWorlds(name, load_generator(name)())
+        return CustomWorlds(name, CONTRACT.load_required(name)())
     except TypeError as error:
         raise PluginError(f"{name} cannot be checked without arguments: {error}") from None
 

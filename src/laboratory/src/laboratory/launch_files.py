@@ -3,25 +3,28 @@
 import dataclasses
 import math
 from pathlib import Path
-from typing import Any, Dict
+from typing import Any, Dict, Optional
 
 import yaml
 
 from laboratory.scenario.scenario import OFFICIAL, Scenario
-from planar import SettingsError, save_map, write_atomically
+from planar import Pose2, SettingsError, save_map, write_atomically
 from sim_bridge.faults import Fault
 
 
-def write_launch_files(scenario: Scenario, seed: int, folder: Path) -> Dict[str, Any]:
+def write_launch_files(
+    scenario: Scenario, seed: int, folder: Path, start: Optional[Pose2] = None
+) -> Dict[str, Any]:
     """Write the files of a scenario.
 
     Args:
         scenario: The scenario.
         seed: Seed of the run.
         folder: Folder for the files.
+        start: Start pose, if it is not that of the scenario.
 
     Returns:
-        The arguments of scenario.launch.
+        The arguments of the launch file.
 
     Raises:
         PlanarError: The scenario cannot be run over ROS.
@@ -35,11 +38,14 @@ def write_launch_files(scenario: Scenario, seed: int, folder: Path) -> Dict[str,
         "seed": seed,
         "robot": scenario.robot,
         "map_file": save_map(arena.grid, folder / "map"),
-        "marker_mode": "mission" if "mission_file" in files else "service",
-        "parameters_file": write_yaml(folder / "parameters.yaml", node_parameters(scenario)),
+        "parameters_file": write_yaml(folder / "parameters.yaml", node_parameters(scenario, start)),
         **files,
     }
     arguments.update(_planner_arguments(scenario.planner))
+    if scenario.localizer:
+        from laboratory.ros import official_package
+
+        arguments["amcl_pkg"] = official_package("amcl", "localizer")
     if scenario.faults:
         faults = {"faults": [fault_table(fault) for fault in scenario.faults]}
         arguments["faults_file"] = write_yaml(folder / "faults.yaml", faults)
@@ -49,14 +55,19 @@ def write_launch_files(scenario: Scenario, seed: int, folder: Path) -> Dict[str,
 def _planner_arguments(planner: str) -> Dict[str, str]:
     if planner != OFFICIAL:
         return {"planner": planner} if planner else {}
-    from laboratory.ros import official_move_base
+    from laboratory.ros import official_package
 
-    return {"move_base_pkg": official_move_base()}
+    return {"move_base_pkg": official_package("move_base", "planner")}
 
 
-def node_parameters(scenario: Scenario) -> Dict[str, Any]:
-    """Return the parameters of each node that differ from their defaults."""
-    start = scenario.start
+def node_parameters(scenario: Scenario, start: Optional[Pose2] = None) -> Dict[str, Any]:
+    """Return the parameters of each node that differ from their defaults.
+
+    Args:
+        scenario: The scenario.
+        start: Start pose, if it is not that of the scenario.
+    """
+    start = start or scenario.start
     initial = {f"initial_pose_{key}": value for key, value in zip("xya", (start.x, start.y, start.yaw))}
     simulation = dataclasses.asdict(scenario.simulation)
     return {

@@ -31,6 +31,8 @@ def run_over_ros(scenario: "Scenario", arena: Arena, seed: int) -> RunTrace:
         command += ["--seed", str(seed), "--output", parent, "--timeout", f"{timeout:g}"]
         if scenario.planner:
             command += ["--planner", scenario.planner]
+        if scenario.localizer:
+            command += ["--localizer", scenario.localizer]
         output = _run_command(guarded(command, SHUTDOWN_SECONDS), timeout + SHUTDOWN_SECONDS)
         results = list(Path(parent).glob("*/result.json"))
         if not results:
@@ -59,8 +61,10 @@ def _read_trace(folder: Path, seconds: float) -> RunTrace:
     end = truth[0, 0] + result.get("simulated_seconds", np.inf)
     truth, estimate = (poses[poses[:, 0] <= end] for poses in (truth, estimate))
     collisions = result.get("collisions", ())
-    outcome = outcome_of(result["success"], collisions, result.get("simulated_seconds", 0.0), seconds)
-    return RunTrace(outcome, result["reason"], truth, _errors(truth, estimate), collisions)
+    duration = result.get("simulated_seconds", 0.0)
+    outcome = result.get("outcome") or outcome_of(result["success"], collisions, duration, seconds)
+    errors, score = _errors(truth, estimate), result.get("score")
+    return RunTrace(outcome, result["reason"], truth, errors, collisions, score=score)
 
 
 def _errors(truth: np.ndarray, estimate: np.ndarray) -> np.ndarray:

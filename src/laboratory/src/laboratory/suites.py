@@ -16,7 +16,7 @@ FOLDER = ROOT / "scenarios"
 
 
 def load_suites(
-    suites: Sequence[str], planners: Sequence[str] = (), is_over_ros: bool = False
+    suites: Sequence[str], planners: Sequence[str] = (), is_over_ros: bool = False, localizer: str = ""
 ) -> Tuple[List[Scenario], List[str]]:
     """Load scenarios.
 
@@ -24,19 +24,21 @@ def load_suites(
         suites: Scenario files, folders of them, or names in ``scenarios/``.
         planners: Local planners to run each scenario with; empty: that of the scenario.
         is_over_ros: Whether they run as a graph of ROS nodes.
+        localizer: ``official`` for the official amcl; empty: amcl_lite.
 
     Returns:
         The scenarios, and an error for each scenario that cannot be run.
 
     Raises:
-        SettingsError: A suite or planner does not exist.
+        SettingsError: A suite, a planner or the localizer does not exist.
     """
+    _check_localizer(localizer, is_over_ros)
     for name in planners:
         _check_planner(name, is_over_ros)
     scenarios, errors = [], []
     for path in [file for suite in suites for file in _files(suite)]:
         try:
-            scenario = replace(read_scenario(path), is_over_ros=is_over_ros)
+            scenario = replace(read_scenario(path), is_over_ros=is_over_ros, localizer=localizer)
             each = [scenario.with_planner(name) for name in planners] or [scenario]
             _check(each[0])
         except PlanarError as error:
@@ -49,17 +51,26 @@ def load_suites(
 def _check_planner(name: str, is_over_ros: bool) -> None:
     if name != OFFICIAL:
         check_local_planner(name)
-    elif is_over_ros:
-        from laboratory.ros import official_move_base
-
-        official_move_base()
     else:
-        raise SettingsError(f"planner {name} runs only over ROS; add --over ros")
+        _check_official("move_base", "planner", is_over_ros)
 
 
-def load_scenario(name: str, planner: str = "", is_over_ros: bool = False) -> Scenario:
+def _check_localizer(name: str, is_over_ros: bool) -> None:
+    if name:
+        _check_official("amcl", "localizer", is_over_ros)
+
+
+def _check_official(package: str, option: str, is_over_ros: bool) -> None:
+    if not is_over_ros:
+        raise SettingsError(f"{option} {OFFICIAL} runs only over ROS; add --over ros")
+    from laboratory.ros import official_package
+
+    official_package(package, option)
+
+
+def load_scenario(name: str, planner: str = "", is_over_ros: bool = False, localizer: str = "") -> Scenario:
     """Load one scenario by file or name. Raises SettingsError if it cannot be run or there are several."""
-    scenarios, errors = load_suites([name], [planner] if planner else [], is_over_ros)
+    scenarios, errors = load_suites([name], [planner] if planner else [], is_over_ros, localizer)
     if errors:
         raise SettingsError(errors[0])
     if len(scenarios) != 1:

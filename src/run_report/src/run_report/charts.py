@@ -2,7 +2,7 @@
 
 import math
 from html import escape
-from typing import List, NamedTuple, Sequence
+from typing import Dict, List, NamedTuple, Sequence, Tuple
 
 import numpy as np
 
@@ -13,6 +13,8 @@ HEIGHT = 100.0
 # States that end a mission have fixed colours; others take turns.
 FINAL_STATES = ("delivered", "failed", "cancelled")
 TONES = 6
+# States up to which the legend of a timeline lists each; of more, it lists each name once.
+MOST_LISTED = 24
 
 
 class ChartLine(NamedTuple):
@@ -71,7 +73,7 @@ def timeline(states: Sequence[StateEvent], end: float) -> str:
     tones = {name: f"tone{number % TONES}" for number, name in enumerate(passing)}
     tones.update({name: name for name in FINAL_STATES})
     ends = [state.stamp for state in states[1:]] + [end]
-    bars, rows = [], []
+    bars = []
     for state, until in zip(states, ends):
         tone = tones[state.name]
         left, width = 100.0 * state.stamp / end, max(100.0 * (until - state.stamp) / end, 0.3)
@@ -79,13 +81,25 @@ def timeline(states: Sequence[StateEvent], end: float) -> str:
         bars.append(
             f'<i class="{tone}" style="left:{left:.2f}%;width:{width:.2f}%" title="{escape(text)}"></i>'
         )
-        rows.append(
-            f'<li class="{tone}">{escape(state.name)} <small>{until - state.stamp:.1f} s</small></li>'
-        )
+    rows = [
+        f'<li class="{tones[name]}">{escape(name)} <small>{text}</small></li>'
+        for name, text in _durations(states, ends)
+    ]
     return (
         f'<figure><figcaption>Mission</figcaption><div class="plot bar">{"".join(bars)}'
         f'{time_labels(end)}</div><ul class="states">{"".join(rows)}</ul></figure>'
     )
+
+
+def _durations(states: Sequence[StateEvent], ends: Sequence[float]) -> List[Tuple[str, str]]:
+    """Return names and durations of states in words; of many, the sum for each name."""
+    seconds = [(state.name, until - state.stamp) for state, until in zip(states, ends)]
+    if len(seconds) <= MOST_LISTED:
+        return [(name, f"{duration:.1f} s") for name, duration in seconds]
+    of_name: Dict[str, List[float]] = {}
+    for name, duration in seconds:
+        of_name.setdefault(name, []).append(duration)
+    return [(name, f"{len(each)} x, {sum(each):.0f} s") for name, each in of_name.items()]
 
 
 def time_labels(end: float, unit: str = "s") -> str:

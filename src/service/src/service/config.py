@@ -51,6 +51,9 @@ class NodeSettings:
         "", "path of the YAML file with named places", required="the path of a YAML file of zones"
     )
     mission_file: str = parameter("", "YAML file of a mission whose deliveries are requested once; or empty")
+    requests_file: str = parameter(
+        "", "JSON list of requests, each submitted at its unix_millis_request_time; or empty"
+    )
     semantic_map_file: str = parameter(
         "",
         "YAML of what is usually where, to search objects by (docs/how_to/find_objects.md); or empty",

@@ -163,7 +163,7 @@ class RequestService:
     def wakes_at(self, now: float) -> float:
         """Return the Unix time at which ``advance`` has to be called although no event comes [s]."""
         elapsed = self._elapsed.update(now)
-        times = [now + self._settings.replan_seconds if self.book.tasks else math.inf]
+        times = [self._planned_at + self._settings.replan_seconds if self.book.tasks else math.inf]
         activity = self.executor.activity
         if activity is not None and activity.wakes_at is not None:
             times.append(now + activity.wakes_at - elapsed)

@@ -1,5 +1,6 @@
 """Messages as run events."""
 
+import json
 from functools import partial
 from typing import Any, Iterator, Mapping, NamedTuple, Optional, Tuple
 
@@ -31,6 +32,7 @@ from evaluation.events import (
     Publication,
     RemarksUpdated,
     RunEvent,
+    ServiceUpdated,
     StateUpdated,
     TruthUpdated,
 )
@@ -161,6 +163,10 @@ def _delivery(message: Any, objects: Mapping[str, Tuple[float, float]]) -> Deliv
 
 def state(message: Any, received: Reception) -> StateUpdated:
     return StateUpdated(received.stamp, message.data)
+
+
+def service(message: Any, received: Reception) -> ServiceUpdated:
+    return ServiceUpdated(received.stamp, json.loads(message.data)["state"]["charge"])
 
 
 def marker(message: Marker, received: Reception) -> MarkerUpdated:

@@ -77,6 +77,7 @@ TOPICS = (
     EventTopic("deliver/goal", DeliverActionGoal, read.mission_request, (kinds.MissionRequested,)),
     EventTopic("pick_objects/mission_state", MissionState, read.mission, (kinds.MissionUpdated,)),
     EventTopic("pick_objects/state", String, read.state, (kinds.StateUpdated,)),
+    EventTopic("service/state", String, read.service, (kinds.ServiceUpdated,)),
     EventTopic("visualization_marker", Marker, read.marker, (kinds.MarkerUpdated,)),
     EventTopic("explore/feedback", ExploreActionFeedback, read.exploration, (kinds.ExplorationUpdated,)),
     EventTopic("explore/result", ExploreActionResult, read.exploration_end, (kinds.ExplorationEnded,)),

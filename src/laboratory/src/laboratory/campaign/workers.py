@@ -10,6 +10,7 @@ from typing import Any, Iterator
 
 import dask
 from distributed import Client, LocalCluster
+from distributed.utils import get_mp_context
 
 from laboratory.errors import WorkersError
 
@@ -21,6 +22,17 @@ LIFETIME, LIFETIME_STAGGER = "60 minutes", "10 minutes"
 CONNECT_TIMEOUT = 20
 # By default Dask makes malloc return freed memory at once, which costs 20 000 page faults a run.
 MALLOC_ENVIRONMENT = {"MALLOC_TRIM_THRESHOLD_": 2**27, "MALLOC_MMAP_THRESHOLD_": 2**26, "MALLOC_ARENA_MAX": 1}
+# By default Dask reads delays of event loops 50 times a second, and memory 10 times, which interrupts runs.
+CHECK_INTERVALS = dict.fromkeys(
+    (
+        "distributed.admin.tick.interval",
+        "distributed.admin.system-monitor.interval",
+        "distributed.worker.memory.monitor-interval",
+    ),
+    "1s",
+)
+# Workers are forked from a process that has imported these once.
+PRELOADED = ("distributed", "laboratory.runner")
 
 
 @dataclass(frozen=True)
@@ -47,7 +59,9 @@ class Workers:
                 "distributed.scheduler.worker-saturation": 1.0,
                 "distributed.scheduler.allowed-failures": MAX_WORKER_DEATHS - 1,
                 "distributed.worker.daemon": True,
+                "distributed.worker.multiprocessing-method": "forkserver",
                 "distributed.worker.profile.enabled": False,
+                **CHECK_INTERVALS,
                 **{
                     f"distributed.nanny.pre-spawn-environ.{key}": value
                     for key, value in MALLOC_ENVIRONMENT.items()
@@ -72,6 +86,7 @@ class Workers:
 
     def _start_cluster(self, attempts: int = MAX_WORKER_DEATHS) -> LocalCluster:
         """Start the processes, again if one dies while it starts."""
+        get_mp_context().set_forkserver_preload([*PRELOADED])
         try:
             return LocalCluster(
                 n_workers=self.count or len(os.sched_getaffinity(0)),

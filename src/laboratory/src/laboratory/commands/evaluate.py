@@ -31,6 +31,9 @@ class Evaluate:
         nargs="+",
         metavar="NAME",
     )
+    localizer: str = option(
+        "", "official: the official amcl, over ROS (default: amcl_lite)", choices=("official",)
+    )
     workers: Optional[int] = option(None, "number of processes (default: one for each core)", type=count)
     scheduler: str = option(
         "", "Dask scheduler instead of local processes: tcp://HOST:8786", metavar="ADDRESS"
@@ -63,7 +66,7 @@ class Evaluate:
 
         requirements = [parse_requirement(text) for text in self.require or ()]
         seeds = None if self.seeds is None else parse_seeds(self.seeds)
-        scenarios, errors = load_suites(self.suites, self.planner or (), self.over == "ros")
+        scenarios, errors = load_suites(self.suites, self.planner or (), self.over == "ros", self.localizer)
         for complaint in errors:
             print_error(complaint)
         if not scenarios:

@@ -25,6 +25,9 @@ class Play(RunOptions):
     planner: str = option(
         "", "local planner (default: that of the scenario); over ROS also official", metavar="NAME"
     )
+    localizer: str = option(
+        "", "official: the official amcl, over ROS (default: amcl_lite)", choices=("official",)
+    )
     over: str = option(
         "process", "how it is run: in one process, or as the graph of ROS nodes", choices=("process", "ros")
     )
@@ -35,7 +38,7 @@ class Play(RunOptions):
 
         if self.over == "ros":
             preload_nodes()
-        scenario = load_scenario(self.scenario, self.planner, self.over == "ros")
+        scenario = load_scenario(self.scenario, self.planner, self.over == "ros", self.localizer)
         if self.over == "ros":
             from laboratory.ros.scenario_launch import launch_scenario
 

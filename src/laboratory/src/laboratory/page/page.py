@@ -62,6 +62,7 @@ def repeat_command(scenario: Scenario, seed: int) -> str:
     is_given = scenario.file.parent == FOLDER
     words = ["./scripts/play.sh", scenario.name if is_given else str(scenario.file), "--seed", str(seed)]
     words += ["--planner", scenario.planner] if scenario.planner else []
+    words += ["--localizer", scenario.localizer] if scenario.localizer else []
     return shlex.join(words + (["--over", "ros"] if scenario.is_over_ros else []))
 
 

@@ -50,6 +50,8 @@ def scenario_digest(scenario: Any) -> str:
         PlanarError: A file of the scenario cannot be read.
     """
     values = {**_plain(scenario), **_IGNORED}
+    if not scenario.localizer:  # so that results from before it existed stay valid
+        del values["localizer"]
     kinds = [_class_name(scenario.world), _class_name(scenario.task)]
     names = (scenario.planner, *(fault.kind for fault in scenario.faults), *_texts(scenario.parameters))
     custom = (*source_files(names, packages()), *_files_named(scenario.parameters))

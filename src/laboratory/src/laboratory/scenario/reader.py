@@ -60,10 +60,11 @@ def _part(table: Table, key: str, errors: ErrorList, *known: str) -> Optional[Ta
 
 def _read_happens(table: Table) -> Dict[str, Any]:
     errors = ErrorList()
-    happens = _part(table, "happens", errors, "boxes", "doors", "people", "faults")
+    happens = _part(table, "happens", errors, "boxes", "moves", "doors", "people", "faults")
     parts: Dict[str, Any] = {}
     if happens is not None:
         parts.update(errors.read(_read_boxes, happens) or {})
+        parts.update(errors.read(_read_moves, happens) or {})
         for key, reader in (("doors", read_doors), ("people", read_people), ("faults", faults_from)):
             parts[key] = errors.read(reader, happens)
     errors.raise_all()
@@ -100,6 +101,14 @@ def _read_boxes(happens: Table) -> Dict[str, Any]:
     if not isinstance(happens.value("boxes"), list):
         return {"boxes": happens.count("boxes")}
     return {"boxes_at": read_each(_read_pose, happens.tables("boxes"))}
+
+
+def _read_moves(happens: Table) -> Dict[str, Any]:
+    if "moves" not in happens:
+        return {}
+    if "boxes" not in happens:
+        raise happens.error_at("moves", "needs boxes that are moved: add boxes")
+    return {"moves": happens.count("moves")}
 
 
 def _read_pose(table: Table) -> Pose2:

@@ -13,7 +13,8 @@ from sim_bridge import SimulationSettings
 from sim_bridge.doorway import Door
 from sim_bridge.faults import Fault
 
-# Name of the planner that stands for the official move_base with its DWA planner, only over ROS.
+# Name of the planner that stands for the official move_base with its DWA planner, and of the localizer that
+# stands for the official amcl; both only over ROS.
 OFFICIAL = "official"
 
 
@@ -32,10 +33,12 @@ class Scenario:
         simulation: Noise and rates of the simulation.
         boxes: Number of boxes that are not in the map.
         boxes_at: Poses of such boxes in the world frame.
+        moves: How often one of the boxes is moved during a run.
         doors: Number of doors that close during a run, or these doors.
         people: Pedestrians.
         faults: Injected faults.
         planner: Local planner; empty: that of the robot.
+        localizer: ``official`` for the official amcl; empty: amcl_lite.
         parameters: Parameters of move_base that override those of the robot.
         seconds: Maximum duration of a run [simulated s].
         seeds: Seeds of an evaluation.
@@ -52,10 +55,12 @@ class Scenario:
     simulation: SimulationSettings = SimulationSettings()
     boxes: int = 0
     boxes_at: Tuple[Pose2, ...] = ()
+    moves: int = 0
     doors: Union[int, Tuple[Door, ...]] = 0
     people: Pedestrians = Pedestrians()
     faults: Tuple[Fault, ...] = ()
     planner: str = ""
+    localizer: str = ""
     parameters: Mapping[str, Any] = field(default_factory=dict)
     seconds: float = 600.0
     seeds: Tuple[int, ...] = tuple(range(100))
@@ -71,8 +76,10 @@ class Scenario:
 
     @property
     def label(self) -> str:
-        """Name with the planner and the mode, if they are not the default."""
-        name = f"{self.name} [{self.planner}]" if self.planner else self.name
+        """Name with the planner, the localizer and the mode, if they are not the default."""
+        parts = [self.planner, f"{self.localizer} amcl" if self.localizer else ""]
+        parts = [part for part in parts if part]
+        name = f"{self.name} [{', '.join(parts)}]" if parts else self.name
         return f"{name} over ROS" if self.is_over_ros else name
 
     def digest(self) -> str:
@@ -81,7 +88,7 @@ class Scenario:
 
     def arena(self, seed: int) -> Arena:
         """Return the world of a seed with its doors, boxes and pedestrians. Raises PlanarError."""
-        from laboratory.worlds.boxes import with_boxes, with_boxes_at
+        from laboratory.worlds.boxes import with_boxes, with_boxes_at, with_moves
         from laboratory.worlds.doors import with_doors, with_doors_at
 
         arena = self.world.arena(seed)
@@ -93,6 +100,8 @@ class Scenario:
             arena = with_boxes(arena, self.boxes, seed, (self.start, *self.task.required_poses(arena)))
         if self.boxes_at:
             arena = with_boxes_at(arena, self.boxes_at)
+        if self.moves:
+            arena = with_moves(arena, self.moves, seed, self.seconds)
         if self.people.count:
             arena = with_people(arena, self.people, seed, self.start, self.task.required_poses(arena))
         return arena

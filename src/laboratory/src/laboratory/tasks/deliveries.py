@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Mapping, Optional, Sequence, Tuple
+from typing import Any, Mapping, Optional, Sequence, Tuple
 
 from add_markers import CarriedParcel
 from evaluation.verdict import collision
@@ -60,9 +60,11 @@ class DeliveryTask:
     def files(self) -> Tuple[Path, ...]:
         return (self.zones,) if self.mission is None else (self.zones, self.mission)
 
-    def launch_files(self, arena: Arena, seed: int, folder: Path) -> Mapping[str, Path]:
+    def launch_files(self, arena: Arena, seed: int, folder: Path) -> Mapping[str, Any]:
         self._mission(arena)
-        return {"zones_file": self.zones, **({"mission_file": self.mission} if self.mission else {})}
+        if self.mission is None:
+            return {"zones_file": self.zones, "marker_mode": "service"}
+        return {"zones_file": self.zones, "mission_file": self.mission, "marker_mode": "mission"}
 
     def _mission(self, arena: Arena) -> Mission:
         if self.mission is not None:

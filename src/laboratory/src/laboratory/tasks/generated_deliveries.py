@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Dict, Mapping, Optional, Sequence, Tuple
+from typing import Any, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 import yaml
@@ -13,7 +13,7 @@ from laboratory.worlds.source import Arena
 from pick_objects import Delivery, Mission
 from planar import Pose2, SettingsError
 from planar.config.yaml_table import Table
-from planar.maps.places import NamedPlace
+from planar.maps.places import places_table
 
 _STREAM = 43
 
@@ -40,9 +40,9 @@ class GeneratedDeliveryTask:
     def files(self) -> Tuple[Path, ...]:
         return ()
 
-    def launch_files(self, arena: Arena, seed: int, folder: Path) -> Mapping[str, Path]:
+    def launch_files(self, arena: Arena, seed: int, folder: Path) -> Mapping[str, Any]:
         mission = self._mission(arena, seed)
-        places = {place.name: _place_table(place) for place in mission.places.values()}
+        places = places_table(mission.places.values())
         deliveries = [
             {"name": each.name, "object": each.object_name, "from": each.source, "to": each.destination}
             for each in mission.deliveries
@@ -51,7 +51,7 @@ class GeneratedDeliveryTask:
         zones_file.write_text(yaml.safe_dump(places), encoding="utf-8")
         content = {"name": mission.name, "deliveries": deliveries}
         mission_file.write_text(yaml.safe_dump(content, sort_keys=False), encoding="utf-8")
-        return {"zones_file": zones_file, "mission_file": mission_file}
+        return {"zones_file": zones_file, "mission_file": mission_file, "marker_mode": "mission"}
 
     def _mission(self, arena: Arena, seed: int) -> Mission:
         if len(arena.places) < 2:
@@ -64,12 +64,6 @@ class GeneratedDeliveryTask:
             deliveries.append(Delivery(f"chore {number}", f"object {number}", source, destination))
         places = {place.name: place for place in arena.places}
         return Mission("chores", places, tuple(deliveries))
-
-
-def _place_table(place: NamedPlace) -> Dict[str, Any]:
-    """A place as an entry of a zones file."""
-    pose = place.pose
-    return {"x": pose.x, "y": pose.y, "yaw": pose.yaw, "radius": place.radius}
 
 
 def read_chores(table: Table, folder: Path) -> GeneratedDeliveryTask:

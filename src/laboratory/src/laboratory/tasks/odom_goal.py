@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Mapping, Optional, Sequence, Tuple
+from typing import Any, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -71,7 +71,7 @@ class OdomGoalTask:
     def files(self) -> Tuple[Path, ...]:
         return ()
 
-    def launch_files(self, arena: Arena, seed: int, folder: Path) -> Mapping[str, Path]:
+    def launch_files(self, arena: Arena, seed: int, folder: Path) -> Mapping[str, Any]:
         raise SettingsError("the task reach runs in one process only, not over ROS")
 
 

@@ -1,10 +1,11 @@
-"""A day of service: generated requests, charging in a dock, furniture that is moved."""
+"""A day of service: generated requests, charging in a dock."""
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Dict, List, Mapping, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
+import yaml
 
 from evaluation.verdict import collision
 from headless_mission import NAVIGATION_CONFIG, EpisodeConditions
@@ -14,11 +15,12 @@ from pick_objects import load_mission
 from planar import Pose2, SettingsError
 from planar.config.yaml_table import Table
 from planar.files.writing import write_atomically
-from planar.maps.places import NamedPlace, parse_pose
+from planar.maps.places import NamedPlace, parse_pose, places_table
 from service.day.day_report import day_report
-from service.day.preparation import MIDNIGHT, DayPlan, prepare_day
+from service.day.preparation import MIDNIGHT, DayPlan, generated_requests, prepare_day, start_pose
 from service.day.requests_by_hour import DaySettings
 from service.day.simulated_day import SimulatedDayRecord
+from service.requests.timed_requests import TimedRequest, save_requests
 from sim_bridge import robot_named
 
 HOUR = 3600.0
@@ -34,14 +36,12 @@ class ServiceDayTask:
         requests: Number of requests.
         mission: Mission file with the places.
         dock: Pose of the dock in the world.
-        moves: How often one of the boxes of the scenario is moved.
         reports: Folder of the reports of days; None: none are written.
     """
 
     requests: int
     mission: Path
     dock: Pose2
-    moves: int = 0
     reports: Optional[Path] = None
 
     def run(self, scenario: RunConditions, arena: Arena, seed: int) -> RunTrace:
@@ -56,18 +56,33 @@ class ServiceDayTask:
             arena.grid,
             self._places(),
             self.dock,
-            DaySettings(requests=self.requests),
-            _boxes(arena),
-            self.moves,
         )
-        day = prepare_day(plan, conditions.navigation(NAVIGATION_CONFIG), conditions, seed)
+        day = prepare_day(
+            plan, self._requests(seed), conditions.navigation(NAVIGATION_CONFIG), conditions, seed
+        )
         record = day.run(MIDNIGHT + scenario.seconds)
         if self.reports is not None:
-            title = f"Day of service, {arena.title}, seed {seed}"
-            page = day_report(record, arena.grid, MIDNIGHT, title)
             self.reports.mkdir(parents=True, exist_ok=True)
-            write_atomically(self.reports / f"seed_{seed}.html", page.encode())
-        return _trace(record)
+            self.write_report(self.reports / f"seed_{seed}.html", record, arena, seed)
+        return trace_of(record)
+
+    def write_report(self, path: Path, record: SimulatedDayRecord, arena: Arena, seed: int) -> None:
+        """Write the page of a day.
+
+        Args:
+            path: File.
+            record: What came of the day.
+            arena: World and map.
+            seed: Seed of the day.
+        """
+        assert arena.grid is not None
+        page = day_report(record, arena.grid, MIDNIGHT, f"Day of service, {arena.title}, seed {seed}")
+        write_atomically(path, page.encode())
+
+    @property
+    def start(self) -> Pose2:
+        """Start pose of the robot in the world: in its dock."""
+        return start_pose(self.dock)
 
     def required_poses(self, arena: Arena) -> Sequence[Pose2]:
         return [
@@ -81,20 +96,27 @@ class ServiceDayTask:
     def files(self) -> Tuple[Path, ...]:
         return (self.mission,)
 
-    def launch_files(self, arena: Arena, seed: int, folder: Path) -> Mapping[str, Path]:
-        raise SettingsError("service_day runs in one process only; over ROS use ./scripts/service.sh")
+    def launch_files(self, arena: Arena, seed: int, folder: Path) -> Mapping[str, Any]:
+        zones_file, dock = folder / "places.yaml", self.dock
+        places = self._places()
+        zones_file.write_text(yaml.safe_dump(places_table(places.values())), encoding="utf-8")
+        return {
+            "zones_file": zones_file,
+            "requests_file": save_requests(folder / "requests.json", self._requests(seed)),
+            "origin": MIDNIGHT,
+            "state_folder": folder / "state",
+            "dock": f"{dock.x} {dock.y} {dock.yaw}",
+        }
+
+    def _requests(self, seed: int) -> List[TimedRequest]:
+        return generated_requests(list(self._places()), DaySettings(requests=self.requests), seed)
 
     def _places(self) -> Dict[str, NamedPlace]:
         return dict(load_mission(self.mission, {}).places)
 
 
-def _boxes(arena: Arena) -> Dict[str, Pose2]:
-    """Return the poses of the boxes that are not in the map."""
-    boxes = (body for body in arena.world.bodies if body.model.startswith("box_"))
-    return {body.model: Pose2(*body.pose_in_world[:2, 3].tolist()) for body in boxes}
-
-
-def _trace(record: SimulatedDayRecord) -> RunTrace:
+def trace_of(record: SimulatedDayRecord) -> RunTrace:
+    """Return the trace of a day; its score is the share of deadlines that were kept."""
     track = np.array(record.track)[:, :4] - (MIDNIGHT, 0.0, 0.0, 0.0)
     outcome, reason = _outcome(record)
     share = len(record.kept) / len(record.with_deadline) if record.with_deadline else None
@@ -114,14 +136,13 @@ def _outcome(record: SimulatedDayRecord) -> Tuple[str, str]:
 
 
 def read_service_day(table: Table, folder: Path) -> ServiceDayTask:
-    """Read ``service_day``: the number of requests; ``mission``, ``dock``, and what else there is."""
-    table.allow_only("service_day", "mission", "dock", "moves", "reports")
+    """Read ``service_day``: the number of requests; ``mission``, ``dock`` and ``reports``."""
+    table.allow_only("service_day", "mission", "dock", "reports")
     dock = table.table("dock")
     dock.allow_only("x", "y", "yaw")
     return ServiceDayTask(
         table.count("service_day"),
         table.path("mission", folder),
         parse_pose(dock),
-        table.count("moves") if "moves" in table else 0,
         folder / table.text("reports") if "reports" in table else None,
     )

@@ -107,8 +107,8 @@ class Task(Protocol):
     def files(self) -> Tuple[Path, ...]:
         """Return the files the task is read from."""
 
-    def launch_files(self, arena: Arena, seed: int, folder: Path) -> Mapping[str, Path]:
-        """Return the launch arguments ``zones_file`` and, for a mission, ``mission_file``.
+    def launch_files(self, arena: Arena, seed: int, folder: Path) -> Mapping[str, Any]:
+        """Return the arguments of the launch file that concern the task, such as ``zones_file``.
 
         Files that do not exist yet are written into ``folder``.
 

@@ -9,12 +9,15 @@ import numpy as np
 from laboratory.worlds.source import Arena
 from planar import FREE, Pose2, SettingsError
 from planar.geometry.distance_field import distance_field
+from sim_bridge.scripted_trajectories import ModelMove
 from sim_bridge.simulation import box_on_floor
 
 SIZE = (0.35, 0.35, 0.5)
 # Minimum distances of a box's centre [m]: to walls, to other boxes, to start and goals.
 WALL_CLEARANCE, BOX_SPACING, GOAL_CLEARANCE = 0.75, 1.2, 1.0
-_STREAM = 41
+# Largest distance along each axis by which a box is moved from where it stood first [m].
+MOVE_DISTANCE = 0.3
+_STREAM, _MOVES_STREAM = 41, 52
 
 
 def with_boxes(arena: Arena, count: int, seed: int, places: Sequence[Pose2]) -> Arena:
@@ -46,6 +49,30 @@ def with_boxes_at(arena: Arena, poses: Sequence[Pose2]) -> Arena:
     """Add boxes at the given poses."""
     boxes = [box_on_floor(f"box_{number}", SIZE, pose) for number, pose in enumerate(poses)]
     return replace(arena, world=replace(arena.world, bodies=(*arena.world.bodies, *boxes)))
+
+
+def with_moves(arena: Arena, count: int, seed: int, seconds: float) -> Arena:
+    """Have boxes moved at random times, each time near to where they stood first.
+
+    Args:
+        arena: Arena with boxes.
+        count: Number of moves.
+        seed: Seed of times, boxes and poses.
+        seconds: Simulated time within which they are moved [s].
+
+    Raises:
+        SettingsError: The arena has no boxes.
+    """
+    boxes = [body for body in arena.world.bodies if body.model.startswith("box_")]
+    if not boxes:
+        raise SettingsError("moves: there are no boxes to move")
+    rng = np.random.default_rng([seed, _MOVES_STREAM])
+    moves = []
+    for stamp in sorted(rng.uniform(0.0, seconds, count).tolist()):
+        box = boxes[int(rng.integers(len(boxes)))]
+        x, y = (box.pose_in_world[:2, 3] + rng.uniform(-MOVE_DISTANCE, MOVE_DISTANCE, 2)).tolist()
+        moves.append(ModelMove(stamp, box.model, Pose2(x, y, float(rng.uniform(-math.pi, math.pi)))))
+    return replace(arena, world=replace(arena.world, moves=tuple(moves)))
 
 
 def free_box_positions(arena: Arena, places: Sequence[Pose2]) -> np.ndarray:

@@ -10,11 +10,7 @@ from laboratory.worlds.source import Arena
 from planar import PlanarError
 from planar.config.settings import settings_from
 from planar.config.yaml_table import Table
-from planar.extensions import (
-    ExtensionPoint,
-    InvalidAnswer,
-    PluginError,
-)
+from planar.extensions import ExtensionPoint, InvalidAnswer, PluginError
 from sim_bridge import WorldError
 
 
@@ -77,23 +73,13 @@ def read_custom_worlds(table: Table, name: str) -> CustomWorlds:
     table.allow_only(name)
     values = table.table(name)
     try:
-        generator_class: Any = load_generator(name)
+        generator_class: Any = CONTRACT.load_required(name)
         where = values.location_of
         generator, unknown = settings_from(
             generator_class, {key: values.value(key) for key in values}, where=where
         )
-    except PluginError as error:
-        raise table.error_at(name, f"cannot be used: {error}") from None
-    except TypeError as error:  # the scenario does not set a field without a default
+    except (PluginError, TypeError) as error:  # TypeError: a field without a default is not set
         raise table.error_at(name, f"cannot be used: {error}") from None
     if unknown:
         values.allow_only(*(field.name for field in fields(generator_class)))
     return CustomWorlds(name, generator)
-
-
-def load_generator(name: str) -> type:
-    """Import a custom generator by its dotted name. Raises PluginError if it violates the contract."""
-    generator_class = CONTRACT.load(name)
-    if generator_class is None:
-        raise PluginError(f"there is no such entry point of {CONTRACT.group}")
-    return generator_class

@@ -43,19 +43,25 @@ def day_report(record: SimulatedDayRecord, grid: OccupancyGrid, midnight: float,
     """
     track = np.array(record.track).reshape(-1, 5)
     end = max(record.end - midnight, 1.0)
-    charge = np.column_stack(((track[:, 0] - midnight) / HOUR, 100.0 * track[:, 4]))
-    battery = chart(
-        "Battery over the hours of the day", "%", (ChartLine("", "estimate", charge),), end / HOUR, "h"
-    )
     return document(
         title,
         f"<h1>{escape(title)}</h1>"
         + tiles(_figures(record, track))
         + f'<section class="card">{_timeline(record.activities, midnight, end)}</section>'
-        + f'<section class="card charts">{battery}</section>'
+        + f'<section class="card charts">{_battery(track, midnight, end)}</section>'
         + f'<section class="card"><h2>Where the robot was</h2>{_heat_map(track, grid)}</section>'
         + f'<section class="card"><h2>Requests</h2>{_requests(record.ended, midnight)}</section>',
     )
+
+
+def _battery(track: np.ndarray, midnight: float, end: float) -> str:
+    """Return a chart of the charge; empty if none is known."""
+    known = track[np.isfinite(track[:, 4])]
+    if not len(known):
+        return ""
+    charge = np.column_stack(((known[:, 0] - midnight) / HOUR, 100.0 * known[:, 4]))
+    line = ChartLine("", "estimate", charge)
+    return chart("Battery over the hours of the day", "%", (line,), end / HOUR, "h")
 
 
 def _figures(record: SimulatedDayRecord, track: np.ndarray) -> List[Tuple[str, str]]:

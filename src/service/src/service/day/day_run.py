@@ -1,15 +1,12 @@
 """Runs days of service event by event."""
 
-import math
-from collections import deque
 from dataclasses import dataclass, field
 from typing import Callable, List, Optional, Sequence
 
 from service.day.kinematic_robot import KinematicRobot
-from service.day.requests_by_hour import TimedRequest
-from service.errors import QueueFullError, RequestError
 from service.execution.robot import RobotEvent, RobotInputs, RobotOrder
 from service.request_service import RequestService
+from service.requests.timed_requests import RequestFeed, TimedRequest
 from service.task import ServiceTask, TaskStatus
 from service.task_book import Changes, JournalEntry
 
@@ -66,7 +63,7 @@ class RecordedService:
         store: Store = lambda changes, number: None,
     ):
         self._service, self._record, self._store = service, record, store
-        self._coming = deque(requests)
+        self._feed = RequestFeed(requests, service.submit, record.refused.append)
 
     def advance(self, now: float, robot: RobotInputs, event: Optional[RobotEvent]) -> Optional[RobotOrder]:
         """Submit the requests that have come, advance the service and return its order.
@@ -76,7 +73,7 @@ class RecordedService:
             robot: State of the robot.
             event: What happened to the last order, if there is news.
         """
-        self._submit(now)
+        self._feed.advance(now)
         record = self._record
         record.lowest_charge = min(record.lowest_charge, robot.charge or 0.0)
         record.calls += 1
@@ -90,19 +87,11 @@ class RecordedService:
 
     def wakes_at(self, now: float) -> float:
         """Return when the service has to be called again, without news of the robot: Unix time [s]."""
-        coming = self._coming[0].stamp if self._coming else math.inf
-        return min(self._service.wakes_at(now), coming)
+        return min(self._service.wakes_at(now), self._feed.next_stamp)
 
     def activity(self, now: float) -> str:
         """Return what the robot does."""
         return str(self._service.state(now)["activity"])
-
-    def _submit(self, now: float) -> None:
-        while self._coming and self._coming[0].stamp <= now:
-            try:
-                self._service.submit(self._coming.popleft().document, now)
-            except (RequestError, QueueFullError) as error:
-                self._record.refused.append(str(error))
 
 
 class DayRun:

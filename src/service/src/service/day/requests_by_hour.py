@@ -5,6 +5,8 @@ from typing import Any, Dict, List, Sequence, Tuple
 
 import numpy as np
 
+from service.requests.timed_requests import TimedRequest
+
 # Expected share of the requests in each hour of a day: meals, mornings, evenings; nights are quiet.
 SHARES = (1, 0, 0, 0, 0, 1, 4, 8, 7, 5, 4, 5, 8, 7, 4, 4, 5, 7, 9, 8, 6, 4, 2, 1)
 CATEGORIES = (("deliver", 0.6), ("go", 0.15), ("patrol", 0.1), ("wait", 0.1), ("dock", 0.05))
@@ -28,19 +30,6 @@ class DaySettings:
     slack_minutes: Tuple[float, float] = (4.0, 45.0)
     ahead_share: float = 0.25
     objects: int = 12
-
-
-@dataclass(frozen=True)
-class TimedRequest:
-    """A request and when it is sent.
-
-    Attributes:
-        stamp: Unix time [s].
-        document: The request as JSON values.
-    """
-
-    stamp: float
-    document: Dict[str, Any]
 
 
 class DayGenerator:

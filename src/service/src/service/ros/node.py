@@ -4,6 +4,7 @@ import hashlib
 import math
 import sys
 import time
+from functools import partial
 from pathlib import Path
 from typing import Callable, Dict, List, Optional, Tuple
 
@@ -15,6 +16,7 @@ from planar.geometry.pose import pose_of_text
 from planar.maps.places import load_places, obstruction_at, unreachable_reason
 from planar.maps.semantic_map import load_semantic_map
 from planar_ros.lockstep import LockstepClient
+from planar_ros.lockstep.ticker import IDLE_TOPIC, ProgressPublisher
 from planar_ros.messages.conversion import OccupancyGridArrays, grid_from_msg
 from planar_ros.messages.validation import subscribe
 from planar_ros.node.parameters import read_settings
@@ -23,18 +25,22 @@ from planar_ros.node.runner import fail, run
 from service.config import EnergySettings, NodeSettings, ServiceSettings
 from service.host import ServiceHost
 from service.http.server import HttpServer
+from service.idle import idle_until
 from service.journal import Journal
 from service.plan.rollout import PlanningModel
 from service.plan.travel_times import GridTravelTimes
 from service.request_service import RequestService, Site
 from service.requests.mission_requests import documents_of
 from service.requests.parser import Knowledge
+from service.requests.timed_requests import RequestFeed, load_requests
 from service.ros.deliver_action import RosRequests
 from service.ros.mission_topics import MissionTopics
 from service.ros.robot_client import RobotClient
 from service.task_book import JournalEntry
 
 POLL_SECONDS = 0.02
+# Longest time for which the service states to have nothing to do [s].
+LONGEST_IDLE = 3600.0
 JOURNAL_FILE = "journal.db"
 # Unix time at ROS time 0, while time is simulated; it survives the node, not the master.
 ORIGIN = "~origin"
@@ -45,11 +51,13 @@ class ServiceNode:
     """Restores the service from its journal and runs it."""
 
     def __init__(self) -> None:
-        self._step = LockstepClient.of_node()
+        self._step, self._idle = LockstepClient.of_node(), ProgressPublisher(IDLE_TOPIC)
         self._settings, self._service_settings, self._energy = _settings()
         path = self._settings.semantic_map_file
         self._semantic_map = load_semantic_map(path) if path else None
         self._mission, self._documents = self._read_mission()
+        file = self._settings.requests_file
+        self._timed_requests = load_requests(Path(file)) if file else []
         self._map: Optional[OccupancyGrid] = None
         subscribe("map", OccupancyGridArrays, self._keep_map, queue_size=1)
         self._required: Dict[str, Callable[[], bool]] = {
@@ -85,14 +93,27 @@ class ServiceNode:
             stamp = rospy.get_time()
             now = self._origin + stamp
             self._requests.update(now)
+            if self._host.service is not None:
+                self._feed.advance(now)
             order = self._host.cycle(now, self._robot.inputs(), self._robot.event(stamp))
             if self._host.service is not None:
                 self._topics.publish(self._host.service, now)
             self._robot.carry_out(order, stamp)
+            self._state_idle_time(stamp)
             self._step.pause(POLL_SECONDS)
         self._http.stop()
         self._host.close()
         self._topics.flush()
+
+    def _state_idle_time(self, stamp: float) -> None:
+        """Publish until when nothing is due; ``stamp`` is ROS time [s]."""
+        service, now = self._host.service, self._origin + stamp
+        if service is None:
+            return
+        due = service.wakes_at(now), self._feed.next_stamp, now + LONGEST_IDLE
+        until = idle_until(now, self._robot.is_moving, *due)
+        if until > now:
+            self._idle.report(rospy.Time.from_sec(until - self._origin))
 
     @property
     def _service(self) -> RequestService:
@@ -115,7 +136,13 @@ class ServiceNode:
         known = Knowledge(tuple(self._mission.places), staging is not None, semantic_map=semantic_map)
         area = search_area_of(self._map, semantic_map)
         site = Site(self._mission.places, around, known, area)
-        return RequestService(site, self._service_settings, journal.restore(), find_ended=journal.ended_task)
+        service = RequestService(
+            site, self._service_settings, journal.restore(), find_ended=journal.ended_task
+        )
+        # By their ids a service that goes on knows those that it has accepted.
+        on_refused = partial(rospy.logwarn, "request refused: %s")
+        self._feed = RequestFeed(self._timed_requests, service.submit, on_refused)
+        return service
 
     def _read_mission(self) -> Tuple[Mission, List[Dict[str, object]]]:
         zones = load_places(self._settings.zones_file)
@@ -167,7 +194,7 @@ def _warn(_number: int, entry: JournalEntry) -> None:
 
 
 def _settings() -> Tuple[NodeSettings, ServiceSettings, EnergySettings]:
-    names = {name for kind in KINDS for name in kind.__dataclass_fields__}
+    names = {ORIGIN.lstrip("~"), *(name for kind in KINDS for name in kind.__dataclass_fields__)}
     return (
         read_settings(NodeSettings, ignore=names),
         read_settings(ServiceSettings, ignore=names),

@@ -10,6 +10,7 @@ from sensor_msgs.msg import BatteryState
 from pick_objects import DriveToPlace, LookForObject
 from pick_objects.ros.navigation_client import NavigationClient
 from planar import Pose2
+from planar.driving import RobotDisplaced
 from planar_ros.messages.conversion import pose2_from_msg
 from planar_ros.messages.validation import subscribe
 from service.execution.robot import DockRobot, RobotEvent, RobotInputs, RobotOrder, StopRobot, UndockRobot
@@ -28,6 +29,7 @@ class RobotClient:
 
     Attributes:
         navigation: Client of move_base.
+        is_moving: Whether an order is under way that moves the robot.
     """
 
     def __init__(self, frame_id: str, pose: Pose2, detects: bool = False):
@@ -35,7 +37,7 @@ class RobotClient:
         self._docking, self._pose = DockingClient(), pose
         self._fed_back: Optional[Pose2] = None
         self._charge: Optional[float] = None
-        self._is_docked = False
+        self._is_docked = self.is_moving = False
         subscribe("amcl_pose", PoseWithCovarianceStamped, self._on_pose, queue_size=1)
         rospy.Subscriber("battery_state", BatteryState, self._on_battery, queue_size=1)
 
@@ -48,12 +50,16 @@ class RobotClient:
 
     def event(self, now: float) -> Optional[RobotEvent]:
         """Return what happened to the last order, if there is news; ``now`` is ROS time [s]."""
-        return self._docking.event(now) or self.navigation.driver.event(now)
+        event = self._docking.event(now) or self.navigation.driver.event(now)
+        if event is not None and not isinstance(event, RobotDisplaced):
+            self.is_moving = False
+        return event
 
     def carry_out(self, order: Optional[RobotOrder], now: float) -> None:
         """Begin an order, which replaces any earlier one."""
         if order is None:
             return
+        self.is_moving = not isinstance(order, StopRobot)
         self._docking.cancel()
         if isinstance(order, (DriveToPlace, LookForObject)):
             self.navigation.driver.carry_out(order)
