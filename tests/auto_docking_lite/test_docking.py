@@ -40,9 +40,14 @@ class TestDocking(unittest.TestCase):
                 states.append(feedback.state)
 
         client.send_goal(AutoDockingGoal(), feedback_cb=on_feedback)
-        wait_until("the result", lambda: client.get_state() in (until, GoalStatus.ABORTED), 120.0)
-        self.assertEqual(client.get_state(), until, client.get_goal_status_text())
+        self.wait_for_end(client, until, 120.0)
         return client.get_result().text, states
+
+    def wait_for_end(self, client, state, seconds=30.0):
+        """Wait for the result, which comes on another connection than the status."""
+        wait_until("the end", lambda: client.get_state() in (state, GoalStatus.ABORTED), seconds)
+        self.assertEqual(client.get_state(), state, client.get_goal_status_text())
+        wait_until("the result", lambda: client.get_result() is not None)
 
     def test_a_day_at_the_dock(self):
         self.dock_and_charge()
@@ -82,7 +87,7 @@ class TestDocking(unittest.TestCase):
         self.dock.send_goal(AutoDockingGoal())
         wait_until("the goal", lambda: self.dock.get_state() == GoalStatus.ACTIVE)
         self.dock.cancel_goal()
-        wait_until("the end", lambda: self.dock.get_state() == GoalStatus.PREEMPTED)
+        self.wait_for_end(self.dock, GoalStatus.PREEMPTED)
         self.assertEqual(self.dock.get_result().text, "Cancelled: Cancel requested.")
         wait_until("the stop", lambda: self.velocity.messages[-1] == Twist())  # on another connection
 

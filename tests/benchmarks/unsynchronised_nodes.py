@@ -9,28 +9,18 @@ rospack finds under the names given. Exit code 1 if the outcome of a seed differ
 """
 
 import argparse
-import contextlib
 import itertools
 import json
-import multiprocessing
-import os
-import queue
-import signal
-import subprocess
 import sys
-import tempfile
 import time
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, Dict, List, Tuple
 
 import numpy as np
-from helpers.busy_loops import busy_loops
-
-from supervision.ros.graph import free_port
+from helpers.recorded_launch import join_graph, recorded_launch
 
 ROOT = Path(__file__).resolve().parents[2]
-START_SECONDS, RUN_SECONDS, STOP_SECONDS = 90.0, 600.0, 30.0
 # Stages after which a mission of pick_objects is over.
 OVER = ("delivered", "failed", "cancelled")
 SAME = 1e-6
@@ -118,40 +108,23 @@ def first_difference(
 
 
 def run_mission(options: argparse.Namespace, seed: int, is_busy: bool) -> MissionRun:
-    """Run a mission; the recorder is another process, as rospy joins one graph in its life."""
-    with contextlib.ExitStack() as stack:
-        environment = {**os.environ, "ROS_MASTER_URI": f"http://127.0.0.1:{free_port()}"}
-        environment["ROS_LOG_DIR"] = stack.enter_context(tempfile.TemporaryDirectory())
-        if is_busy:
-            stack.enter_context(busy_loops(options.busy))
-        results: Any = multiprocessing.Queue()
-        recorder = multiprocessing.Process(
-            target=_record, args=(environment["ROS_MASTER_URI"], seed, is_busy, results), daemon=True
-        )
-        recorder.start()
-        stack.callback(recorder.terminate)
-        command = ["roslaunch", "-p", environment["ROS_MASTER_URI"].rpartition(":")[2]]
-        command += ["home_service", "home_service.launch", *_arguments(options, seed)]
-        with options.log.open("ab") as log:
-            launch = subprocess.Popen(command, env=environment, stdout=log, stderr=subprocess.STDOUT)
-        stack.callback(_stop, launch)
-        deadline = time.monotonic() + START_SECONDS + RUN_SECONDS
-        while time.monotonic() < deadline and launch.poll() is None:
-            with contextlib.suppress(queue.Empty):
-                return results.get(timeout=1.0)
-        sys.exit(f"unsynchronised_nodes.py: seed {seed}: no end of the mission; see {options.log}")
+    """Run a mission and record it."""
+    launch = ["home_service", "home_service.launch", *_arguments(options, seed)]
+    busy = options.busy if is_busy else 0
+    run: MissionRun = recorded_launch(launch, _record, (seed, is_busy), busy, options.log)
+    return run
 
 
 def _arguments(options: argparse.Namespace, seed: int) -> List[str]:
     home = ROOT / "map"
     arguments = [f"world_file:={home / 'home.world'}", f"map_file:={home / 'home.yaml'}"]
     arguments += [f"zones_file:={home / 'zones.yaml'}", f"seed:={seed}", f"speed:={options.speed}"]
+    arguments += [f"pace:={options.pace}"] if options.pace else []
+    arguments += ["ordered:=true"] if options.ordered else []
     return [*arguments, f"amcl_pkg:={options.amcl}", f"move_base_pkg:={options.move_base}"]
 
 
 def _record(master: str, seed: int, is_busy: bool, results: Any) -> None:
-    os.environ["ROS_MASTER_URI"] = master
-    import rosgraph
     import rospy
     from geometry_msgs.msg import PoseWithCovarianceStamped, Twist
     from move_base_msgs.msg import MoveBaseActionResult
@@ -160,12 +133,7 @@ def _record(master: str, seed: int, is_busy: bool, results: Any) -> None:
 
     from planar_ros.messages.conversion import pose2_from_msg
 
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    while not rosgraph.is_master_online():
-        time.sleep(0.1)
-    while not rospy.has_param("/use_sim_time"):
-        time.sleep(0.02)
-    rospy.init_node("recorder", disable_signals=True)
+    join_graph(master)
     run, begun = MissionRun(seed, is_busy), [0.0]
 
     def stamped(message: Any) -> Tuple[float, ...]:
@@ -199,15 +167,6 @@ def _record(master: str, seed: int, is_busy: bool, results: Any) -> None:
     rospy.Subscriber("pick_objects/state", String, on_state, tcp_nodelay=True)
     while True:
         time.sleep(1.0)
-
-
-def _stop(launch: subprocess.Popen) -> None:
-    launch.send_signal(signal.SIGINT)
-    try:
-        launch.wait(STOP_SECONDS)
-    except subprocess.TimeoutExpired:
-        launch.kill()
-        launch.wait()
 
 
 def main() -> int:
@@ -251,6 +210,8 @@ def _options() -> argparse.Namespace:
     )
     parser.add_argument("--amcl", default="amcl", help="package of amcl (default: amcl)")
     parser.add_argument("--move-base", default="move_base", help="package of move_base (default: move_base)")
+    parser.add_argument("--pace", default="", help="rules of nodes, as NODE:RULE (default: the known ones)")
+    parser.add_argument("--ordered", action="store_true", help="preload libordered_wake.so into move_base")
     parser.add_argument("--speed", default="0", help="0: as fast as the nodes keep up (default)")
     parser.add_argument(
         "--log", type=Path, default=Path("unsynchronised_nodes.log"), help="output of the nodes"

@@ -55,6 +55,8 @@ class RunProjectTest(unittest.TestCase):
         self.assertEqual(result["markers"], ["shown at (1.00, 0.50)", "hidden", "shown at (-0.50, 0.50)"])
         self.assertEqual(result["collisions"], [])
         self.assertGreater(result["distance_driven"], 2.0)
+        rules = [line.partition(": ")[0] for line in result["pace"]]
+        self.assertLessEqual({"add_markers", "pick_objects"}, set(rules), "each of its nodes has a rule")
         self.assertEqual(_hash_of(self._checkout), hash_before)
         self.assertEqual(processes_with(self._mark), [])
         self.assertEqual(_mounts_of(self._checkout), [])

@@ -53,7 +53,7 @@ class Test:
     )
     jobs: Optional[int] = option(
         None,
-        f"number of ROS test files run at the same time (default: one for each core, at most {MOST_JOBS})",
+        f"number of ROS test files run at the same time (default: three for two cores, at most {MOST_JOBS})",
         type=count,
     )
 
@@ -100,6 +100,11 @@ def run_ros_tests(folder: Path, paths: Sequence[Path], jobs: int, is_quick: bool
     return totals.outcome
 
 
+def _jobs_for(cores: int) -> int:
+    """Return how many ROS tests to run at a time: they wait, for starts and deadlines, for a third of it."""
+    return min(cores + cores // 2, MOST_JOBS)
+
+
 def matching(paths: Iterable[Path], names: Sequence[str]) -> List[Path]:
     relative = {path: path.relative_to(ROOT).as_posix() for path in paths}
     return sorted(path for path, text in relative.items() if not names or any(name in text for name in names))
@@ -119,7 +124,7 @@ def main() -> int:
     folder.mkdir(parents=True)
     outcome = run_unit_tests(folder, names) if unit else Outcome()
     if ros:
-        jobs = options.jobs or min(len(os.sched_getaffinity(0)), MOST_JOBS)
+        jobs = options.jobs or _jobs_for(len(os.sched_getaffinity(0)))
         outcome += run_ros_tests(folder, ros, jobs, options.quick)
     for reason in outcome.reasons:
         print(f"FAILED  {reason}")

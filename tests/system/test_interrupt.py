@@ -21,7 +21,7 @@ MOMENTS = (0.1, 0.6, 1.5, 3.0, 6.0)
 # Time-outs of an end are much longer than it takes, so that it is distinguished from none.
 START_SECONDS, EXIT_SECONDS, LEFT_SECONDS = 60.0, 30.0, 30.0
 # Killed by SIGKILL so often, so many seconds after roslaunch has begun, which starts the nodes in these.
-STARTS, STARTING_SECONDS = 12, (0.0, 2.5)
+STARTS, STARTING_SECONDS = 6, (0.0, 2.5)
 ROSLAUNCH, MOVE_BASE = "/roslaunch --port", "__name:=move_base"
 # Interrupted so many seconds after the process has been started which looks after roslaunch.
 GUARD, GUARDING_SECONDS = "-m supervision.guard", (0.0, 0.03)

@@ -21,7 +21,7 @@ LOST_ODOMETRY = "faults: [{kind: odometry_stopped, start: 8.0}]\n"
 
 class StandstillTest(unittest.TestCase):
     def test_a_pause_without_end_is_reported(self):
-        code, output = self.run_to_its_end("--speed", "2", "--timeout", str(TIMEOUT), do=self.pause)
+        code, output = self.run_to_its_end("--speed", "2", "--timeout", "25", do=self.pause)
         self.assertEqual(code, 1)
         self.assertRegex(output, r"time stands still at [\d.]+ s: the simulation is paused")
         self.assertRegex(output, r"FAILURE: not done within .*; simulated time stands still at")

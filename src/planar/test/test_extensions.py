@@ -212,7 +212,9 @@ def test_an_argument_that_is_returned_is_the_callers_own():
 
 
 def test_a_name_without_a_class_is_refused():
-    with pytest.raises(PluginError, match="there is no painter 'Nobody'"):
+    with pytest.raises(
+        PluginError, match="painter must be like my_package.my_module/MyPainter, got 'Nobody'"
+    ):
         CONTRACT.make("Nobody", PainterSettings())
 
 

@@ -85,3 +85,22 @@ def test_a_shorter_period_applies_at_once_and_is_no_time_jump(clock):
         periods[0] = period
         ticker.poll()
     assert (ticks, jumps) == ([1.0, 1.25], [])
+
+
+def test_after_a_jump_ahead_the_second_poll_ticks(clock, monkeypatch):
+    node = Node(monkeypatch, is_synchronized=lambda: True)
+    for stamp in (100.0, 100.25, 160.0, 160.25, 160.5):
+        clock(stamp)
+        node.ticker.poll()
+    assert node.ticks == [100.0, 100.25, 160.25, 160.5]
+    node.end()
+
+
+def test_a_node_whose_period_is_longer_than_that_of_others_ticks_at_each_poll(clock, monkeypatch):
+    node = Node(monkeypatch, is_synchronized=lambda: True)
+    node.ticker = Ticker(lambda: 5.0, node._tick, node._on_time_jump)
+    for stamp in (100.0, 105.0, 110.0):
+        clock(stamp)
+        node.ticker.poll()
+    assert node.ticks == [100.0, 105.0, 110.0]
+    node.end()

@@ -47,6 +47,24 @@ def test_until_all_nodes_have_reported_time_passes_as_on_the_wall():
     assert pacer.delay(0.06, 0.0) > 0.0
 
 
+def test_a_further_node_is_waited_for_once_it_reports_and_until_then_time_passes_as_on_the_wall():
+    pacer = Pacer(0.0)
+    pacer.follow("laser")
+    assert pacer.delay(0.02, 0.0) == 0.0
+    assert pacer.delay(0.06, 0.0) > 0.0, "it has never answered"
+    reported(pacer, "laser", 5.0)
+    assert pacer.delay(5.1, 0.0) == 0.0
+    assert pacer.lagging_nodes(5.12) == ["laser"]
+
+
+def test_beside_a_node_of_the_wall_clock_time_passes_as_on_the_wall():
+    pacer = Pacer(0.0)
+    pacer.limited_by = frozenset({"driver"})
+    assert steps_within(pacer, 2.0) == pytest.approx(2.0, abs=0.1)
+    pacer.limited_by = frozenset()
+    assert steps_within(pacer, 0.01) >= 1000.0
+
+
 def test_a_node_whose_scan_waits_for_slow_odometry_is_not_waited_for():
     pacer = Pacer(0.0, ["amcl"])
     reported(pacer, "amcl", 0.985, period=0.025)

@@ -13,6 +13,7 @@ from sim_bridge.faults import Fault, FaultInjector
 from sim_bridge.geometry.shapes import Plane
 from sim_bridge.noise import noise_named
 from sim_bridge.people.walker import Walker
+from sim_bridge.scripted_trajectories import ModelMove
 from sim_bridge.simulation import box_on_floor
 from sim_bridge.world import Body, Collision, World
 
@@ -31,6 +32,8 @@ WALLS = tuple(
 ROOM = World("room", (FLOOR, *WALLS))
 PERSON = Walker("anna", np.array([[2.0, 2.0], [2.0, -2.0], [-2.0, 2.5]]), rest=3.0)
 DOOR = Door("door", Pose2(0.0, -3.0), 1.0, start=30.0, end=70.0)
+BOX = box_on_floor("crate", (0.4, 0.4, 0.6), Pose2(1.5, 1.5))
+MOVED = World("moved", (*ROOM.bodies, BOX), moves=(ModelMove(60.0, "crate", Pose2(2.5, -1.5)),))
 BUSY = World("busy", ROOM.bodies, walkers=(PERSON,), doors=(DOOR,))
 # A robot counts as standing after 6 s.
 STANDING = 6.5
@@ -61,8 +64,12 @@ def run(world, skips, noise="high", seconds=100.0, faults=None):
     for _ in range(20):
         episode.advance()
     episode.command = Twist2()
-    while not episode.idle(scene.stamp + seconds):
+    end = None
+    while end is None or scene.stamp < end:
         episode.advance()
+        begin = scene.stamp
+        if episode.idle(begin + seconds if end is None else end) and end is None:
+            end = begin + seconds
     idle_until = scene.stamp
     recorder.steps.clear()
     for number in range(60):
@@ -73,7 +80,7 @@ def run(world, skips, noise="high", seconds=100.0, faults=None):
 
 
 @pytest.mark.parametrize("noise", ["turtlebot", "high"])
-@pytest.mark.parametrize("world", [ROOM, BUSY], ids=lambda world: world.name)
+@pytest.mark.parametrize("world", [ROOM, BUSY, MOVED], ids=lambda world: world.name)
 def test_the_run_after_an_idle_time_has_the_same_bits_as_if_it_had_been_stepped(world, noise):
     skipped, stepped = (run(world, skips, noise) for skips in (True, False))
     assert skipped[0] > 100.0 and skipped == stepped
@@ -133,6 +140,19 @@ def test_faults_begin_and_end_as_if_the_idle_time_had_been_stepped(kind):
     fault = Fault(kind, 60.0, 112.0, 0.5)
     skipped, stepped = (run(ROOM, skips, faults=FaultInjector([fault], 1)) for skips in (True, False))
     assert skipped == stepped and skipped != run(ROOM, True)
+
+
+def test_an_idle_time_ends_when_a_model_is_moved():
+    simulation = Simulation(MOVED)
+    episode = Episode(simulation, 0.1)
+    while not episode.idle(100.0):
+        episode.advance()
+    models = simulation.scene.models
+    assert simulation.scene.stamp == pytest.approx(60.0, abs=0.1)
+    assert models.state("crate").pose[0, 3] == pytest.approx(1.5)
+    episode.advance()
+    assert models.state("crate").pose[:2, 3] == pytest.approx((2.5, -1.5), abs=1e-3)
+    simulation.close()
 
 
 def test_a_command_ends_the_idle_time():

@@ -7,7 +7,7 @@ import time
 import pytest
 
 from sim_bridge.rest.barrier import MOST_NEWS, OTHERS_PATIENCE_SECONDS, RECOVERY_SECONDS, RestBarrier
-from sim_bridge.rest.threads import ProcessThreads, is_native
+from sim_bridge.rest.threads import ProcessThreads, has_ended, is_native
 
 QUIET, PATIENCE, LOOK = 0.002, 5.0, 0.0005
 
@@ -93,6 +93,18 @@ def test_a_node_that_is_late_once_is_waited_for_again():
     assert not run.barrier.given_up
 
 
+def test_a_node_that_was_late_is_waited_for_again_although_the_clock_wakes_it():
+    run = Run(planner=1e9)
+    run.step()
+    rests = [True, True, False]
+    for look in range(int(2.5 * RECOVERY_SECONDS / LOOK)):
+        run.wall += LOOK
+        run.barrier.is_passed(
+            run.wall, {"planner": lambda look=look: rests[look % 3]}, run.AWAITED, False, QUIET
+        )
+    assert not run.barrier.given_up
+
+
 def test_a_node_that_has_ended_is_dropped():
     run = Run(spinning=1e9)
     run.step()
@@ -133,9 +145,11 @@ def program():
 def rests(threads, wanted):
     """Whether the threads are seen as wanted within some time."""
     end = time.monotonic() + 10.0
-    while threads.are_resting() != wanted and time.monotonic() < end:
+    while time.monotonic() < end:
+        if threads.are_resting() == wanted:
+            return True
         time.sleep(0.001)
-    return threads.are_resting() == wanted
+    return False
 
 
 def test_threads_that_sleep_rest(program):
@@ -156,6 +170,18 @@ def test_an_ended_process_is_noticed(program):
     process.wait()
     with pytest.raises(ProcessLookupError):
         threads.are_resting()
+
+
+def test_a_process_whose_end_its_parent_has_not_noticed_has_ended(program):
+    process = program(REST)
+    assert not has_ended(process.pid)
+    process.kill()
+    end = time.monotonic() + 10.0
+    while not has_ended(process.pid) and time.monotonic() < end:
+        time.sleep(0.001)
+    assert has_ended(process.pid)
+    process.wait()
+    assert has_ended(process.pid)
 
 
 def test_a_program_of_python_is_not_native(program):

@@ -7,7 +7,7 @@ from planar import Pose2
 from sim_bridge import Simulation, SimulationSettings, WorldError
 from sim_bridge.geometry.pose3 import pose3
 from sim_bridge.geometry.shapes import Cylinder, Plane
-from sim_bridge.scripted_trajectories import ScriptedTrajectory
+from sim_bridge.scripted_trajectories import ModelMove, ScheduledMoves, ScriptedTrajectory
 from sim_bridge.world import Body, Collision, World
 
 TIMES, POINTS = np.array([0.0, 2.0, 4.0]), np.array([(3.0, 0.0), (1.0, 0.0), (3.0, 0.0)])
@@ -65,3 +65,13 @@ def test_the_simulation_continues_after_a_body_was_removed():
 def test_times_that_do_not_increase_are_an_error():
     with pytest.raises(WorldError, match="walker::link: a trajectory needs increasing times"):
         ScriptedTrajectory("walker::link", np.array([0.0, 2.0, 2.0]), POINTS)
+
+
+def test_a_model_is_not_moved_to_where_a_robot_is():
+    moved, far, near = [], np.array([[5.0, 0.0]]), np.array([[0.5, 0.0]])
+    schedule = ScheduledMoves([ModelMove(2.0, "b", Pose2()), ModelMove(1.0, "a", Pose2())])
+    assert (schedule.next_after(0.0), schedule.next_after(2.0)) == (1.0, np.inf)
+    for stamp, robots in ((0.5, far), (1.5, near), (1.6, far), (3.0, far), (4.0, far)):
+        schedule.update(stamp, robots, lambda name, pose, at=stamp: moved.append((at, name)))
+    assert moved == [(1.6, "a"), (3.0, "b")]
+    assert not schedule.is_due(0.0) and schedule.is_due(1.0), "after a rewind all are still to come"

@@ -10,6 +10,7 @@ from sim_bridge.errors import WorldError
 from sim_bridge.geometry.pose3 import pose3
 from sim_bridge.geometry.shapes import Box, Cylinder, Mesh, Plane, Sphere
 from sim_bridge.sdf import load_world, read_model
+from sim_bridge.sdf.element import Element
 
 UNIT_BOX = "<geometry><box><size>1 1 1</size></box></geometry>"
 
@@ -282,6 +283,20 @@ def test_poses_may_be_given_in_other_frames(load):
     assert in_world(world, "m::b")[:3, 3] == pytest.approx([11.0, 1.0, 0.0])
     assert in_world(world, "m::c")[:3, 3] == pytest.approx([11.0, 1.0, 3.0])
     assert in_world(world, "m::d")[:3, 3] == pytest.approx([17.0, 0.0, 0.0])
+
+
+def test_the_pose_of_a_link_is_read_once_however_many_parts_it_has(load, monkeypatch):
+    reads = []
+    raw_pose = Element.raw_pose
+    monkeypatch.setattr(Element, "raw_pose", lambda element: reads.append(element.tag) or raw_pose(element))
+
+    def reads_of_links(parts):
+        reads.clear()
+        visuals = "".join(f"<visual name='v{number}'>{UNIT_BOX}</visual>" for number in range(parts))
+        load(model(f"<link name='l'>{visuals}<collision name='c'>{UNIT_BOX}</collision></link>"))
+        return reads.count("link")
+
+    assert reads_of_links(20) == reads_of_links(1)
 
 
 def test_a_joint_may_be_named_like_a_link_and_then_the_name_means_the_link(load):

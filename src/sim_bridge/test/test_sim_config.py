@@ -15,7 +15,7 @@ from sim_bridge.robots import ROBOTS, robot_named
 FOLDER = Path(__file__).resolve().parents[1] / "config"
 CONFIG = FOLDER / "sim_bridge.yaml"
 # Parameters that are set by the launch file's arguments.
-ARGUMENTS = {"world", "dock", "objects_file", "seed", "speed", "wait_for", "static_publishers"}
+ARGUMENTS = {"world", "dock", "objects_file", "seed", "speed", "wait_for", "pace", "static_publishers"}
 
 
 def test_the_shipped_configuration_holds_every_default():

@@ -32,6 +32,11 @@ if(_text MATCHES "boost::bind *\\([^;]*[ ,]_[1-9]" AND NOT _text MATCHES "placeh
   add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:SHELL:-include boost/bind.hpp -DBOOST_BIND_GLOBAL_PLACEHOLDERS>")
 endif()
 
+# Packages that are not installed, such as costmap_2d, passed on where Eigen's headers are.
+if(_text MATCHES "# *include *[<\"](unsupported/)?Eigen/" AND EXISTS /usr/include/eigen3)
+  include_directories(AFTER SYSTEM /usr/include/eigen3)
+endif()
+
 # Accepted by the compilers of that time.
 add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:SHELL:-Wno-narrowing -fpermissive>")
 

@@ -1,11 +1,15 @@
 import os
+import subprocess
 from pathlib import Path
+
+import pytest
 
 from run_project.checkout.layout import read_checkout
 from run_project.checkout.placement import Placement
 from run_project.checkout.substitutes import complete_package
 from run_project.preparation import building
 from run_project.preparation.building import (
+    FRESH_CLONE,
     Workspace,
     broken_configurations,
     build,
@@ -123,3 +127,19 @@ def test_a_vendored_package_keeps_its_files_and_gets_those_and_the_programs_of_t
     assert (theirs / "launch/world.launch").read_text() == "<!-- theirs -->"
     programs = [file for file in theirs.rglob("drive") if os.access(file, os.X_OK)]
     assert [file.read_text() for file in programs] == ["#!/usr/bin/env python3"]
+
+
+@pytest.mark.skipif(not Path("/usr/include/eigen3").exists(), reason="Eigen is not installed")
+def test_headers_of_eigen_are_found_without_the_package_that_passed_them_on(tmp_path):
+    source, build = tmp_path / "source", tmp_path / "build"
+    source.mkdir()
+    (source / "CMakeLists.txt").write_text(
+        "cmake_minimum_required(VERSION 3.0.2)\nproject(eye CXX)\nadd_library(eye OBJECT eye.cpp)\n"
+    )
+    (source / "eye.cpp").write_text(
+        "#include <Eigen/Core>\nint rows() { return Eigen::Matrix2d().rows(); }\n"
+    )
+    included = f"-DCMAKE_PROJECT_INCLUDE={FRESH_CLONE}"
+    for command in (["cmake", "-S", source, "-B", build, included], ["cmake", "--build", build]):
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr

@@ -66,7 +66,10 @@ class NodeSettings:
         10.0, "wall-clock time to wait for a map to check the places against", "s", POSITIVE
     )
     not_before: float = parameter(
-        0.0, "simulated time before which no mission starts, though all is ready", "s", ZERO_OR_MORE
+        0.0,
+        "simulated time before which no mission starts; a second before, the costmaps are cleared",
+        "s",
+        ZERO_OR_MORE,
     )
 
     def __post_init__(self):

@@ -9,6 +9,7 @@ from planar.config.settings import check
 from planar.geometry.dock_field import DockField
 from sim_bridge.noise import NOISE_PROFILES, NOT_NEGATIVE, NoiseSettings
 from sim_bridge.power.battery import BatterySettings
+from sim_bridge.rest.rules import FORMS, parse_rules
 
 # With more, a single period of the odometry would take seconds [Hz].
 MAX_PHYSICS_RATE = 100_000
@@ -77,6 +78,14 @@ class BridgeSettings(RunTimeSettings):
     bystanders: str = parameter(
         "", "beginnings of the names of nodes that pace_all does not wait for, separated by spaces"
     )
+    pace: str = parameter(
+        "",
+        "how time passes beside nodes that are not synchronised: NODE:RULE, separated by spaces; rules: "
+        f"{FORMS}; others have the rule of known_file, or one that is learned",
+    )
+    known_file: str = parameter(
+        "", "YAML file of the rules of known programs; empty: config/known_nodes.yaml of sim_bridge"
+    )
     static_publishers: str = parameter(
         "",
         "names of nodes, separated by spaces, whose static transforms the synchronised nodes receive before "
@@ -91,6 +100,11 @@ class BridgeSettings(RunTimeSettings):
     faults_file: str = parameter(
         "", "YAML file with a list of faults (docs/reference/faults.md); empty: none"
     )
+    skip_idle: bool = parameter(
+        True,
+        "steps in which no node has anything to do are skipped, unless another node listens or speed is 1 or "
+        "less; otherwise all are taken, with the same result",
+    )
     clock_rate: int = parameter(50, "rate of /clock; must divide odometry_rate", "Hz", POSITIVE)
     joint_state_rate: int = parameter(10, "rate of joint_states; must divide odometry_rate", "Hz", POSITIVE)
     strict: bool = parameter(
@@ -103,6 +117,10 @@ class BridgeSettings(RunTimeSettings):
         f"noise profile of the sensors: {', '.join(NOISE_PROFILES)}; noise.yaml lists their values, each of "
         "which may also be set here by its name",
     )
+
+    def __post_init__(self):
+        super().__post_init__()
+        parse_rules(self.pace)
 
 
 @dataclass(frozen=True)
@@ -135,7 +153,7 @@ class RobotSettings:
 
 
 # Parameters that are set by arguments of the launch file.
-ARGUMENTS = ("world", "dock", "objects_file", "seed", "speed", "wait_for", "static_publishers")
+ARGUMENTS = ("world", "dock", "objects_file", "seed", "speed", "wait_for", "pace", "static_publishers")
 _NOISE_VALUES = {each.name for each in parameters_of(NoiseSettings)}
 
 CONFIG_FILES = {

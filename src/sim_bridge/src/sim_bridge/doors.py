@@ -9,8 +9,8 @@ from planar import Pose2
 from sim_bridge.doorway import Door
 from sim_bridge.geometry.pose3 import from_pose2
 from sim_bridge.geometry.shapes import Box
-from sim_bridge.people.crowd import rows_of
-from sim_bridge.physics.kinematics import KinematicBodies
+from sim_bridge.people.crowd import Crowd, rows_of
+from sim_bridge.physics.kinematics import KinematicBodies, Steps
 from sim_bridge.robot import Robot
 from sim_bridge.world import Body, Collision
 
@@ -34,46 +34,42 @@ class Doors:
         self.bodies = tuple(_body_of(door, is_closed) for door, is_closed in zip(doors, self._are_closed))
 
     def _reset(self) -> None:
-        self._are_closed = [door.is_scheduled_closed(0.0) for door in self._doors]
+        self._are_closed = [bool(door.is_scheduled_closed(np.zeros(1))[0]) for door in self._doors]
 
-    def update(
-        self,
-        engine: KinematicBodies,
-        step: int,
-        rate: int,
-        stamp: float,
-        robots: Iterable[Robot],
-        people: np.ndarray,
-    ) -> None:
+    def update(self, engine: KinematicBodies, steps: Steps, robots: Iterable[Robot], crowd: Crowd) -> None:
         """Open and close doors, if due; at time 0 all return to their initial states.
 
         Args:
             engine: Holds the doors' bodies.
-            step: Number of the next physics step.
-            rate: Physics steps per second.
-            stamp: Simulated time [s].
+            steps: Physics steps before which they move, in which robots do not.
             robots: The robots.
-            people: States (N, 5) of the pedestrians, as ``Crowd.rows``.
+            crowd: The pedestrians, who have moved before the same steps.
         """
-        if not self._doors or step % max(rate // DOOR_RATE, 1):
+        if not self._doors or not (due := steps.due(DOOR_RATE)):
             return
-        if stamp == 0.0:
+        stamps = steps.stamps(due)
+        if stamps[0] == 0.0:
             self._reset()
-        robots_xy = rows_of(robots)[:, :2]
+        robots_xy, people_xy = rows_of(robots)[:, :2], crowd.positions_before(due)
         for number, door in enumerate(self._doors):
-            may_close = self._are_closed[number] or not _is_near(door, robots_xy)
-            is_closed = door.is_scheduled_closed(stamp) and may_close and not _is_near(door, people[:, :2])
+            is_wanted = door.is_scheduled_closed(stamps) & ~_are_near(door, people_xy)
+            if _are_near(door, robots_xy):
+                is_closed = self._are_closed[number] and bool(is_wanted.all())
+            else:
+                is_closed = bool(is_wanted[-1])
             self._are_closed[number] = is_closed
             if engine.has_link(door.link):  # it may have been deleted
                 engine.set_positions([(door.link, *_position(door, is_closed))])
 
 
-def _is_near(door: Door, others_xy: np.ndarray) -> bool:
-    """Return whether one of the positions ``others_xy`` (N, 2) is close to the closed door."""
+def _are_near(door: Door, others_xy: np.ndarray) -> np.ndarray:
+    """Return (...) whether one of the positions ``others_xy`` (..., N, 2) is close to the closed door."""
     across = np.array((-math.sin(door.pose.yaw), math.cos(door.pose.yaw)))
     off_xy = others_xy - (door.pose.x, door.pose.y)
     along = np.clip(off_xy @ across, -door.width / 2.0, door.width / 2.0)
-    return bool((np.hypot(*(off_xy - along[:, None] * across).T) < CLEARANCE).any())
+    off_xy = off_xy - along[..., None] * across
+    near: np.ndarray = np.hypot(off_xy[..., 0], off_xy[..., 1]) < CLEARANCE
+    return near.any(axis=-1)
 
 
 def _position(door: Door, is_closed: bool) -> Tuple[float, float]:

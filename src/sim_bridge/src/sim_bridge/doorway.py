@@ -3,6 +3,8 @@
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from planar import Pose2
 from sim_bridge.errors import WorldError
 
@@ -37,6 +39,6 @@ class Door:
         """Name of its link."""
         return f"{self.name}::link"
 
-    def is_scheduled_closed(self, stamp: float) -> bool:
-        """Return whether the door should be closed at a simulated time [s]."""
-        return self.start <= stamp < self.end
+    def is_scheduled_closed(self, stamps: np.ndarray) -> np.ndarray:
+        """Return (N,) whether the door should be closed at simulated times (N,) [s]."""
+        return (self.start <= stamps) & (stamps < self.end)

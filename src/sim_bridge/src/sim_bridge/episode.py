@@ -4,13 +4,11 @@ import math
 from typing import Callable, Optional, Sequence
 
 from planar import Twist2
+from sim_bridge.driving.idle_time import last_steps
 from sim_bridge.faults.injection import FaultInjector
 from sim_bridge.faults.kind import FaultContext
 from sim_bridge.robot import StepResult
 from sim_bridge.simulation import ROBOT_NAME, Simulation
-
-# Simulated time before the end of an idle time in which sensors measure again, each at least once [s].
-LAST_SECONDS = 1.0
 
 
 class EpisodeHooks:
@@ -87,17 +85,19 @@ class Episode:
         Commands in flight are discarded. With a fault that is active meanwhile, no steps are skipped.
 
         Args:
-            until: Simulated time to advance to, rounded up to whole control periods [s].
+            until: Simulated time to advance to, rounded up to whole control periods, unless a model is moved
+                before [s].
 
         Returns:
             Whether time has passed: not if the robot or something else moves.
         """
         scene, period = self.simulation.scene, self._steps * self.simulation.step_seconds
+        until = min(until, scene.moves.next_after(scene.stamp))
         count = math.ceil((until - scene.stamp) / period - 1e-6) * self._steps
         if count <= 0 or not self.simulation.park():
             return False
         self.command = self._in_flight = None
-        skipped = count - math.ceil(LAST_SECONDS / self.simulation.step_seconds)
+        skipped = count - last_steps(self.simulation.step_seconds)
         if skipped > 0 and (self._faults is None or self._faults.are_inactive(scene.stamp, until)):
             scene.skip(skipped)
             count -= skipped

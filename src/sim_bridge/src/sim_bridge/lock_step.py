@@ -46,7 +46,7 @@ class LockStepCoordinator:
         self.members: FrozenSet[str] = frozenset()
         self._members: Dict[str, _Member] = {}
         self._number = 0
-        self._stamp = NEVER
+        self._stamp = self._held_until = NEVER
         self._members_changed = False
 
     @property
@@ -83,7 +83,7 @@ class LockStepCoordinator:
 
     def reset_time(self) -> None:
         """Restart simulated time; messages of the current tick are delivered before it passes."""
-        self._stamp = NEVER
+        self._stamp = self._held_until = NEVER
         self._members_changed = True
 
     def record_answer(self, name: str, number: int, sent: Mapping[str, int]) -> None:
@@ -101,7 +101,7 @@ class LockStepCoordinator:
 
     def delivery_due(self, stamp: float) -> bool:
         """Return whether the messages of the latest tick are delivered at ``stamp`` [simulated s]."""
-        return self._tick_due(stamp) or stamp >= self._stamp + self.latency - SAME
+        return self.tick_due(stamp) or stamp >= self._stamp + self.latency - SAME
 
     def unanswered(self) -> List[str]:
         """Return the members that have not answered the latest tick."""
@@ -111,6 +111,14 @@ class LockStepCoordinator:
         """Return the total of messages that members have sent up to the latest tick, by channel."""
         return {channel: count for member in self._members.values() for channel, count in member.sent.items()}
 
+    def is_tick(self, stamp: float) -> bool:
+        """Return whether the latest tick began at ``stamp`` [simulated s]."""
+        return self._number > 0 and abs(stamp - self._stamp) < SAME
+
+    def hold(self, until: float) -> None:
+        """Begin no tick before ``until`` [simulated s], unless the members change."""
+        self._held_until = until
+
     def begin_tick(self, stamp: float) -> Optional[Tuple[int, bool]]:
         """Begin the tick that is due at ``stamp`` [simulated s].
 
@@ -118,15 +126,20 @@ class LockStepCoordinator:
             The number of the tick, and whether the members have changed since the last one; None if none is
             due.
         """
-        if not self._tick_due(stamp):
+        if not self.tick_due(stamp):
             return None
         members_changed, self._members_changed = self._members_changed, False
         self._number, self._stamp = self._number + 1, stamp
         return self._number, members_changed
 
-    def _tick_due(self, stamp: float) -> bool:
-        """Ticks are at multiples of the period, where sensors of that rate have just measured."""
+    def tick_due(self, stamp: float) -> bool:
+        """Return whether a tick begins at ``stamp`` [simulated s].
+
+        Ticks are at multiples of the period, where sensors of that rate have just measured.
+        """
         if self._members_changed or not self._members:
             return self._members_changed
+        if stamp < self._held_until - SAME:
+            return False
         period, delay = self.period, self.delay - SAME
         return math.floor((stamp - delay) / period) > math.floor((self._stamp - delay) / period)

@@ -1,5 +1,6 @@
 """Pace of simulated time: limited by the wall clock and by the nodes that process its data."""
 
+import math
 from collections import deque
 from typing import Deque, Dict, FrozenSet, Iterable, List, Optional, Set
 
@@ -33,6 +34,7 @@ class Pacer:
         speed: As the argument; may be changed.
         odometry_delay: Time that a scan may have to wait for odometry, granted in addition [simulated s].
         synchronised_nodes: Nodes that answer each tick, and are waited for elsewhere.
+        limited_by: Nodes beside which the simulation runs at most in real time.
     """
 
     def __init__(
@@ -42,6 +44,7 @@ class Pacer:
         self.wait_for = frozenset(wait_for)
         self.odometry_delay = 0.0
         self.synchronised_nodes: FrozenSet[str] = frozenset()
+        self.limited_by: FrozenSet[str] = frozenset()
         self._shortest_period = shortest_period
         self._patience = patience
         self._missing: Set[str] = set(self.wait_for)
@@ -52,6 +55,20 @@ class Pacer:
         self._blocked_since: Optional[float] = None
         self._anchor_wall = self._anchor_stamp = 0.0
         self._anchor_speed = -1.0
+
+    @property
+    def longest_jump(self) -> float:
+        """Longest time that may pass at once [simulated s]; 0 in real time and beside nodes that report."""
+        others = self._missing.union(self._reported) - self.synchronised_nodes
+        if self.limited_by or others or 0.0 < self.speed <= REAL_TIME:
+            return 0.0
+        return self.speed * FORGIVEN_DELAY if self.speed else math.inf
+
+    def follow(self, name: str) -> None:
+        """Wait for the reports of a further node."""
+        if name not in self.wait_for:
+            self.wait_for |= {name}
+            self._missing.add(name)
 
     def report(self, name: str, stamp: float) -> None:
         """Record how far a node has processed the simulation.
@@ -139,7 +156,8 @@ class Pacer:
 
     def _speed_delay(self, stamp: float, wall: float) -> float:
         speed = self.speed
-        if self._missing - self.synchronised_nodes and not 0.0 < speed < REAL_TIME:
+        is_limited = self.limited_by or self._missing - self.synchronised_nodes
+        if is_limited and not 0.0 < speed < REAL_TIME:
             speed = REAL_TIME
         if speed == 0.0:
             self._anchor_speed = speed

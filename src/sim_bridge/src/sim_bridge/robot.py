@@ -14,6 +14,7 @@ from sim_bridge.description import RobotProfile
 from sim_bridge.description.bodies import bodies_of
 from sim_bridge.driving.drive import BASE_RATE, OmnidirectionalDrive, RampedDrive, WheelDrive
 from sim_bridge.physics.engine import Engine
+from sim_bridge.physics.kinematics import interval
 from sim_bridge.physics.vehicle import Vehicle
 from sim_bridge.power.system import POWER_SECONDS, PowerReading, PowerSystem
 from sim_bridge.sensors.base import Mounting, Reading, Sensor, SensorSpec
@@ -230,7 +231,7 @@ class Robot:
     def _set_rates(self, settings: SimulationSettings) -> None:
         """Compute the interval, in physics steps, at which motors are set and contacts read."""
         self._settings = settings
-        self._interval = max(settings.physics_rate // BASE_RATE, 1)
+        self._interval = interval(settings.physics_rate, BASE_RATE)
         self._power_interval = self._interval * max(round(POWER_SECONDS * BASE_RATE), 1)
         self.vehicle.invalidate_speeds()
 

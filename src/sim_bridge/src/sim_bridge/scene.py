@@ -15,15 +15,15 @@ from sim_bridge.doors import DOOR_RATE, Doors
 from sim_bridge.driving.parking import Parking
 from sim_bridge.errors import UnknownEntityError, WorldError
 from sim_bridge.geometry.pose3 import from_pose2
-from sim_bridge.people.crowd import WALK_RATE, Crowd
+from sim_bridge.people.crowd import WALK_RATE, Crowd, rows_of
 from sim_bridge.physics.engine import Engine
 from sim_bridge.physics.forces import Forces
-from sim_bridge.physics.kinematics import KinematicState, at_rest
+from sim_bridge.physics.kinematics import KinematicState, Steps, at_rest, interval
 from sim_bridge.physics.model_joints import ModelJoints
 from sim_bridge.physics.models import Models
 from sim_bridge.physics.vehicle import Overlap
 from sim_bridge.robot import Robot, RobotWrappers, StepResult
-from sim_bridge.scripted_trajectories import TRAJECTORY_RATE, TrajectoryPlayer
+from sim_bridge.scripted_trajectories import TRAJECTORY_RATE, ScheduledMoves, TrajectoryPlayer
 from sim_bridge.sensors.base import Mounting
 from sim_bridge.views.scene_view import SceneView
 from sim_bridge.world import Body, Joint, World
@@ -34,6 +34,8 @@ FLOOR_SEARCH = 0.1
 MAX_START_SHIFT, MAX_START_MOVES = 0.15, 10
 # Rates at which scripted bodies move [Hz].
 MOVING_RATES = (TRAJECTORY_RATE, WALK_RATE, DOOR_RATE)
+# Simulated time for which they are moved at once while the scene is parked [s].
+MOVED_AT_ONCE = 600
 
 
 class Scene:
@@ -54,6 +56,7 @@ class Scene:
         view: What sensors see of the scene.
         lights: Lights by name.
         trajectory_player: Moves bodies along scripted trajectories.
+        moves: Models that are moved at given times.
         crowd: Pedestrians.
         doors: Doors.
     """
@@ -71,7 +74,7 @@ class Scene:
         self.lights = {light.name: light for light in world.lights}
         self.settings, self._seed, self._wrappers = settings, seed, wrappers
         self.trajectory_player, self.doors = TrajectoryPlayer(world.trajectories), Doors(world.doors)
-        self.crowd = Crowd(world.walkers, world)
+        self.moves, self.crowd = ScheduledMoves(world.moves), Crowd(world.walkers, world)
         self._reset_engine(world.gravity)
         self.add([*world.bodies, *self.crowd.bodies, *self.doors.bodies], world.joints)
 
@@ -102,10 +105,12 @@ class Scene:
         for name, command in commands.items():
             self.wake()
             self.robot(name).command(command)
+        if not self._parking.is_active and self.moves.is_due(self.stamp):
+            self.moves.update(self.stamp, rows_of(self._robots.values())[:, :2], self.models.move_level)
         robots, stamp, has_forces = self._robots.values(), self.stamp, self.forces.are_pending
         rate, steps = self.settings.physics_rate, 1 if has_forces else _steps_at_once(self.settings, robots)
         for _ in range(rate // self.settings.odometry_rate // steps):
-            self._move_bodies(stamp)
+            self._move_bodies(steps)
             if not self._parking.is_active:
                 for robot in robots:
                     robot.begin_steps(self._physics_steps)
@@ -138,29 +143,27 @@ class Scene:
         """
         assert self._parking.is_active, "only a parked scene can skip steps"
         rate = self.settings.physics_rate
-        intervals = [max(rate // times, 1) for times in MOVING_RATES] if self._has_moving_bodies else []
         end = self._physics_steps + count * (rate // self.settings.odometry_rate)
         while self._physics_steps < end:
-            self._move_bodies(self.stamp)
-            self._physics_steps = self._parking.next_step(self._physics_steps, end, intervals)
-            for robot in self._robots.values():
-                robot.update_power(self._physics_steps, self.stamp)
+            part = min(end, self._physics_steps + MOVED_AT_ONCE * rate)
+            self._move_bodies(part - self._physics_steps)
+            while self._physics_steps < part:
+                self._physics_steps = self._parking.next_step(self._physics_steps, part)
+                for robot in self._robots.values():
+                    robot.update_power(self._physics_steps, self.stamp)
 
     def wake(self) -> None:
         """Let physics go on after ``park``; the noise of sensors starts afresh."""
         self._parking.end(self._physics_steps)
 
-    @property
-    def _has_moving_bodies(self) -> bool:
-        return bool(self.trajectory_player.trajectories or self.crowd.links or self.doors.bodies)
-
-    def _move_bodies(self, stamp: float) -> None:
-        """Move what is scripted: obstacles on trajectories, pedestrians, doors."""
-        if self._has_moving_bodies:
-            tick, robots = (self._physics_steps, self.settings.physics_rate, stamp), self._robots.values()
-            self.trajectory_player.update(self._engine, *tick)
-            self.crowd.update(self._engine, *tick, robots)
-            self.doors.update(self._engine, *tick, robots, self.crowd.rows)
+    def _move_bodies(self, count: int) -> None:
+        """Move what is scripted before the next ``count`` steps: obstacles on trajectories, people, doors."""
+        if self.trajectory_player.trajectories or self.crowd.links or self.doors.bodies:
+            first, robots = self._physics_steps, self._robots.values()
+            steps = Steps(first, first + count, self.settings.physics_rate, self._stamp_at_rate)
+            self.trajectory_player.update(self._engine, steps)
+            self.crowd.update(self._engine, steps, robots)
+            self.doors.update(self._engine, steps, robots, self.crowd)
 
     def close(self) -> None:
         """Free the physics engine."""
@@ -361,7 +364,7 @@ def _steps_at_once(settings: SimulationSettings, robots: Iterable[Robot]) -> int
     It is a power of two: Bullet divides the time step by it, and rounding would make it skip steps.
     """
     rate = settings.physics_rate
-    actions = [max(rate // times, 1) for times in MOVING_RATES]
+    actions = [interval(rate, times) for times in MOVING_RATES]
     largest = reduce(
         math.gcd, [*actions, *(robot.steps_at_once for robot in robots)], rate // settings.odometry_rate
     )

@@ -9,7 +9,7 @@ from sim_bridge.doorway import Door
 from sim_bridge.geometry.pose3 import IDENTITY
 from sim_bridge.geometry.shapes import Shape, VisualShape
 from sim_bridge.people.walker import Walker
-from sim_bridge.scripted_trajectories import ScriptedTrajectory
+from sim_bridge.scripted_trajectories import ModelMove, ScriptedTrajectory
 
 Colour = Tuple[float, float, float]
 DARK: Colour = (0.0, 0.0, 0.0)
@@ -203,6 +203,7 @@ class World:
         robots: Models with a drive plugin.
         lights: Lights.
         trajectories: Trajectories of kinematic bodies.
+        moves: Models that are moved at given times.
         walkers: Pedestrians.
         doors: Doors.
     """
@@ -215,5 +216,6 @@ class World:
     robots: Tuple[DrivenModel, ...] = ()
     lights: Tuple[Light, ...] = ()
     trajectories: Tuple[ScriptedTrajectory, ...] = ()
+    moves: Tuple[ModelMove, ...] = ()
     walkers: Tuple[Walker, ...] = ()
     doors: Tuple[Door, ...] = ()

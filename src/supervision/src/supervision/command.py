@@ -5,7 +5,7 @@ import pkgutil
 from dataclasses import is_dataclass
 from typing import Iterable, List, Protocol, Type
 
-from planar.extensions import ExtensionPoint, PluginError
+from planar.extensions import ExtensionPoint
 
 
 class Command(Protocol):
@@ -68,13 +68,6 @@ class CommandFolder:
             PluginError: If there is no such class, or it is no command.
         """
         if "/" in name:
-            return _load_custom(name)
+            return CONTRACT.load_required(name)
         module = importlib.import_module(f"{self._name}.{name}")
         return getattr(module, name.title().replace("_", ""))
-
-
-def _load_custom(name: str) -> Type[Command]:
-    found = CONTRACT.load(name)
-    if found is None:
-        raise PluginError(f"{name} is no command; expected a name like my_package.my_module/MyCommand")
-    return found

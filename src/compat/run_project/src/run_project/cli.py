@@ -55,7 +55,7 @@ ROS_FOLDER = re.compile(r"/opt/ros/[a-z]+")
 # because many projects compare positions in the map with /odom.
 SIMULATOR_PARAMETERS = {
     "pace_all": True,
-    "bystanders": "run_project record cockpit rviz",
+    "bystanders": "run_project cockpit",
     "odometry_rate": 200,
     "noise": "ideal",
     "range_noise": 0.01,
@@ -360,6 +360,7 @@ def _parameters(
         "/use_sim_time": True,
         "/gazebo/speed": speed,
         "/gazebo/seed": options.seed,
+        "/gazebo/pace": " ".join(options.pace),
         **{f"/gazebo/{name}": value for name, value in SIMULATOR_PARAMETERS.items()},
     }
 

@@ -5,7 +5,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Optional, Sequence, Tuple
 
+from planar.errors import SettingsError
 from run_project.judging.run_record import FINAL_STATUSES
+from sim_bridge.rest.rules import FORMS, parse_rules
 from supervision import command_line
 from supervision.command_line import argument, option, seconds
 from supervision.view_options import ViewOptions
@@ -24,6 +26,14 @@ def _goal_statuses(text: str) -> Tuple[str, ...]:
 def _window_input(text: str) -> str:
     if not text.partition("=")[0] or "=" not in text or "\n" in text:
         raise argparse.ArgumentTypeError(f"must be WINDOW=TEXT, got {text!r}")
+    return text
+
+
+def _pace_rule(text: str) -> str:
+    try:
+        parse_rules(text)
+    except SettingsError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
     return text
 
 
@@ -70,6 +80,13 @@ class ProjectOptions(ViewOptions):
         type=_window_input,
         nargs="+",
         metavar="WINDOW=TEXT",
+    )
+    pace: Tuple[str, ...] = option(
+        (),
+        f"how time passes beside a node: {FORMS} (default: that of known nodes, or learned)",
+        type=_pace_rule,
+        nargs="+",
+        metavar="NODE:RULE",
     )
     rviz: bool = option(False, "show it in rviz with the project's configuration")
     record: bool = option(False, "record a bag into the run folder")

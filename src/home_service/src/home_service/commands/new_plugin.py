@@ -43,8 +43,6 @@ KINDS = {
     "fault": PluginKind("sim_bridge", "faults: [{{kind: {plugin}, start: 8.0}}] in a mission or a scenario"),
     "world_generator": PluginKind("laboratory", "world: {{{plugin}: {{}}}} in a scenario"),
 }
-# Dependencies of every plugin, beside the package that uses it.
-USED = ("planar",)
 PACKAGE_XML = """<?xml version="1.0"?>
 <package format="3">
   <name>{package}</name>
@@ -55,7 +53,8 @@ PACKAGE_XML = """<?xml version="1.0"?>
 
   <buildtool_depend>catkin</buildtool_depend>
   <buildtool_depend>python3-setuptools</buildtool_depend>
-  {depends}
+  <exec_depend>{user}</exec_depend>
+  <exec_depend>planar</exec_depend>
 </package>
 """
 TEST = '''"""{title} keeps its contract."""
@@ -121,9 +120,6 @@ class NewPlugin:
             "kind": self.kind,
             "plugin": self._plugin,
             "user": kind.user,
-            "depends": "\n  ".join(
-                f"<exec_depend>{each}</exec_depend>" for each in sorted({kind.user, *USED})
-            ),
         }
         module, _, named = kind.example.rpartition("/")
         source = (

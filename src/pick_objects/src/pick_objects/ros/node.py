@@ -8,6 +8,7 @@ from typing import Callable, Dict, List, Optional
 import rospy
 from home_service_msgs.msg import DeliverGoal
 from home_service_msgs.srv import AddDelivery, AddDeliveryResponse, CancelDelivery, CancelDeliveryResponse
+from std_srvs.srv import Empty
 
 from pick_objects.checkpoint import checkpoint_of, resume_errand
 from pick_objects.config import ErrandSettings, NodeSettings
@@ -22,6 +23,7 @@ from planar import OccupancyGrid
 from planar.driving import FinishTask
 from planar.maps.places import NamedPlace, load_pickup_and_dropoff, load_places, unreachable_reason
 from planar.maps.semantic_map import load_semantic_map
+from planar_ros.calls.services import ServiceError, call_service
 from planar_ros.lockstep import LockstepClient
 from planar_ros.messages.conversion import OccupancyGridArrays, grid_from_msg
 from planar_ros.messages.validation import subscribe
@@ -31,6 +33,8 @@ from planar_ros.node.readiness import NodeReadiness, ReadinessMonitor
 from planar_ros.node.runner import fail, run
 
 POLL_SECONDS = 0.02
+# How long before the time of not_before the costmaps are cleared [simulated s], and the service for it.
+CLEARED_SECONDS, CLEAR_COSTMAPS = 1.0, "move_base/clear_costmaps"
 
 
 class PickObjectsNode:
@@ -159,9 +163,22 @@ class PickObjectsNode:
         self._step.join(takes_turns=True)
         if not self._wait_for(lambda: not self._missing(), settings.server_timeout):
             return f"not ready after {settings.server_timeout:g} s: waiting for {', '.join(self._missing())}"
-        while rospy.get_time() < settings.not_before and not rospy.is_shutdown():
-            self._step.pause(POLL_SECONDS)
+        if settings.not_before > 0.0:
+            self._pause_until(settings.not_before - CLEARED_SECONDS)
+            self._clear_costmaps()
+            self._pause_until(settings.not_before)
         return None
+
+    def _pause_until(self, stamp: float) -> None:
+        while rospy.get_time() < stamp and not rospy.is_shutdown():
+            self._step.pause(POLL_SECONDS)
+
+    def _clear_costmaps(self) -> None:
+        """Clear obstacles of scans that move_base received or not, depending on when it was ready."""
+        try:
+            call_service(CLEAR_COSTMAPS, Empty, Empty._request_class(), self._settings.server_timeout)
+        except ServiceError as error:
+            rospy.logwarn("the costmaps are not cleared before the mission: %s", error)
 
     def _missing(self) -> List[str]:
         return [what for what, is_met in self._required.items() if not is_met()]

@@ -33,10 +33,6 @@ class InvalidAnswer(Exception):  # noqa: N818  -- reports a fault of the plugin,
     """The answer of a plugin cannot be used; the text follows the plugin's name."""
 
 
-def _no_more(found: type) -> Iterable[str]:
-    return ()
-
-
 @dataclass(frozen=True)
 class ExtensionPoint(Generic[T]):
     """What a user-defined class may replace.
@@ -68,7 +64,7 @@ class ExtensionPoint(Generic[T]):
     max_seconds: float = math.inf
     is_lazy: bool = False
     settings: Optional[type] = None
-    requirements: Callable[[type], Iterable[str]] = _no_more
+    requirements: Callable[[type], Iterable[str]] = lambda found: ()
     parameter: str = ""
 
     @property
@@ -94,15 +90,18 @@ class ExtensionPoint(Generic[T]):
             raise PluginError(f"{name} is no {self.kind}: {', '.join(lacks)}")
         return found
 
-    def check_name(self, parameter: str, name: str) -> None:
-        """Check that a parameter names a class of this kind.
+    def load_required(self, name: str, parameter: str = "") -> type:
+        """Load a class as ``load`` does, but raise PluginError if the name has no dot and is no entry point.
 
-        Raises:
-            PluginError: There is no such class, or it lacks something.
+        Args:
+            name: As for ``load``.
+            parameter: What has this value, for the message; empty: the kind.
         """
-        if self.load(name) is None:
+        found = self.load(name)
+        if found is None:
             example = f"my_package.my_module/My{self.kind.rpartition(' ')[2].title()}"
-            raise PluginError(f"{parameter} must be like {example}, got {name!r}")
+            raise PluginError(f"{parameter or self.kind} must be like {example}, got {name!r}")
+        return found
 
     def make(self, name: str, *given: Any) -> T:
         """Construct the class of a name, behind a guard.
@@ -114,10 +113,7 @@ class ExtensionPoint(Generic[T]):
         Raises:
             PluginError: There is no such class, or it lacks something.
         """
-        found = self.load(name)
-        if found is None:
-            raise PluginError(f"there is no {self.kind} {name!r}")
-        return self.guarded(name, partial(found, *given))
+        return self.guarded(name, partial(self.load_required(name), *given))
 
     def guarded(self, name: str, make: Callable[[], Any]) -> Any:
         """Return a guard around the object that ``make`` constructs."""

@@ -11,10 +11,6 @@ from planar.extensions.point import ExtensionPoint
 T = TypeVar("T")
 
 
-def _unchanged(values: Dict[str, Any]) -> Dict[str, Any]:
-    return values
-
-
 @dataclass(frozen=True)
 class Plugin(Generic[T]):
     """A plugin of an extension point.
@@ -35,7 +31,7 @@ class Plugin(Generic[T]):
     make: Callable[..., T]
     deprecated: Mapping[str, str] = field(default_factory=dict)
     synonyms: Mapping[str, str] = field(default_factory=dict)
-    translate: Callable[[Dict[str, Any]], Dict[str, Any]] = _unchanged
+    translate: Callable[[Dict[str, Any]], Dict[str, Any]] = lambda values: values
     without_effect: Tuple[IneffectiveParameter, ...] = ()
     elsewhere: FrozenSet[str] = frozenset()
 
@@ -126,12 +122,10 @@ class Registry(Generic[T]):
             settings = self.point.settings_of(found)
             if any(each.settings is settings for each in self._known):  # the type selects the plugin
                 settings = type(settings.__name__, (settings,), {"__doc__": settings.__doc__})
-            make = partial(self._guarded, name, found)
-            self._loaded[name] = Plugin(name, settings, make)
+            self._loaded[name] = Plugin(
+                name, settings, lambda *given: self.point.guarded(name, partial(found, *given))
+            )
         return self._loaded.get(name)
-
-    def _guarded(self, name: str, found: type, *given: Any) -> T:
-        return self.point.guarded(name, partial(found, *given))
 
 
 _selected: Dict[Tuple[str, str], Registry[Any]] = {}

@@ -107,16 +107,19 @@ class BandedGrid:
         return OccupancyGrid(cells, self.resolution, self.origin)
 
 
-def grid_from_picture(picture: str, resolution: float = 1.0, origin: Pose2 = Pose2()) -> OccupancyGrid:
+def grid_from_picture(
+    picture: str, resolution: float = 1.0, origin: Pose2 = Pose2(), scale: int = 1
+) -> OccupancyGrid:
     """Make a grid from text, top row first.
 
     Args:
         picture: ``#`` occupied, ``.`` or space free, ``?`` unknown.
         resolution: Cell size [m].
         origin: Pose in the map of the lower left corner.
+        scale: Width and height of a character in cells.
     """
     lines = picture.strip("\n").splitlines()
     width = max(len(line) for line in lines)
     meaning = {"#": OCCUPIED, ".": FREE, " ": FREE, "?": UNKNOWN}
     cells = [[meaning[char] for char in line.ljust(width)] for line in reversed(lines)]
-    return OccupancyGrid(np.array(cells, dtype=np.int8), resolution, origin)
+    return OccupancyGrid(np.kron(cells, np.ones((scale, scale))).astype(np.int8), resolution, origin)

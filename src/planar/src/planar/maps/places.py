@@ -1,7 +1,7 @@
 """Named places of a map, read from YAML."""
 
 from dataclasses import dataclass
-from typing import Dict, Optional, Tuple
+from typing import Any, Dict, Iterable, Optional, Tuple
 
 from planar.config.yaml_table import Table, read_table
 from planar.errors import SettingsError
@@ -51,6 +51,22 @@ def load_places(path) -> Dict[str, NamedPlace]:
     """
     table = read_table(path)
     return {name: parse_place(table, name) for name in table}
+
+
+def places_table(places: Iterable[NamedPlace]) -> Dict[str, Any]:
+    """Return places as the content of a YAML file that ``load_places`` reads."""
+    return {
+        place.name: {
+            **_pose_table(place.pose),
+            "radius": place.radius,
+            "approaches": [_pose_table(pose) for pose in place.approaches],
+        }
+        for place in places
+    }
+
+
+def _pose_table(pose: Pose2) -> Dict[str, float]:
+    return {"x": pose.x, "y": pose.y, "yaw": pose.yaw}
 
 
 def parse_place(table: Table, name: str) -> NamedPlace:

@@ -10,12 +10,18 @@ from std_msgs.msg import Header
 from rospy_transport.node import sleep_until
 
 NEVER = rospy.Time(0)
+# Longest time between two polls, besides two periods, that is no jump of the clock [s].
+LONGEST_GAP = 1.0
 # Interval at which a synchronized node's thread checks whether it still is [wall s].
 CHECK_SECONDS = 0.2
 
 
 class Ticker:
-    """Calls ``tick(now)`` every ``period()`` seconds and ``on_time_jump()`` when ROS time has jumped back."""
+    """Calls ``tick(now)`` every ``period()`` seconds and ``on_time_jump()`` when ROS time has jumped back.
+
+    When it has jumped ahead, the first poll does not tick: what the other nodes make of the new time, such as
+    transforms, arrives with the next one.
+    """
 
     def __init__(
         self,
@@ -38,7 +44,9 @@ class Ticker:
             now, period = rospy.Time.now(), rospy.Duration(self._period())
             if now < self._polled_at:
                 self._restart()
-            self._polled_at = now
+            last, self._polled_at = self._polled_at, now
+            if last != NEVER and (now - last).to_sec() > max(LONGEST_GAP, 2.0 * period.to_sec()):
+                return
             self._due = min(self._due, now + period)  # the period may have been shortened
             if now != rospy.Time(0) and now >= self._due:
                 self._due = max(self._due + period, now) if self._due != NEVER else now + period
@@ -121,18 +129,22 @@ class LockstepThreads:
         self._changed.notify_all()
 
 
-PROGRESS_TOPIC = "/simulation/progress"
+PROGRESS_TOPIC, IDLE_TOPIC = "/simulation/progress", "/simulation/idle"
 
 
 class ProgressPublisher:
-    """Publishes the simulated time up to which this node has worked; does nothing without simulated time."""
+    """Publishes a simulated time of this node; does nothing without simulated time.
 
-    def __init__(self):
+    Args:
+        topic: PROGRESS_TOPIC: up to when the node has worked; IDLE_TOPIC: until when it has nothing to do.
+    """
+
+    def __init__(self, topic: str = PROGRESS_TOPIC):
         self._publisher = None
         if rospy.get_param("/use_sim_time", False):
-            self._publisher = rospy.Publisher(PROGRESS_TOPIC, Header, queue_size=10, tcp_nodelay=True)
+            self._publisher = rospy.Publisher(topic, Header, queue_size=10, tcp_nodelay=True)
 
     def report(self, stamp: rospy.Time) -> None:
-        """Publish that the node has worked up to ``stamp``."""
+        """Publish the time."""
         if self._publisher is not None:
             self._publisher.publish(Header(stamp=stamp, frame_id=rospy.get_name().lstrip("/")))

@@ -163,6 +163,12 @@ def topology() -> int:
     return hash(connections.topic_names()) & 0xFFFFFFFF
 
 
+def is_read_only(service: str) -> bool:
+    """Return whether calls of a service change nothing in the simulation, by its name."""
+    name = service.rsplit("/", 1)[-1]
+    return name in READ_ONLY or name.startswith(READ_ONLY_PREFIX)
+
+
 class CallMonitor:
     """Notes each service that a node calls which is not synchronized: the call comes at a random moment.
 
@@ -188,10 +194,10 @@ class CallMonitor:
             service: Resolved name of the service.
             caller: Name of the calling node.
         """
-        members, name = self._members(), service.rsplit("/", 1)[-1]
+        members = self._members()
         if not members or caller in members or service in self._known:
             return
-        if name not in READ_ONLY and not name.startswith(READ_ONLY_PREFIX):
+        if not is_read_only(service):
             self._known.add(service)
             self._note(f"the service {service} was called by {caller}, which is not synchronized")
 

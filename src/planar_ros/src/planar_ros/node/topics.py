@@ -11,7 +11,7 @@ import rosgraph
 import rospy
 
 from planar_ros.lockstep import transport
-from rospy_transport.connections import OpenConnections
+from rospy_transport.connections import OpenConnections, is_connected
 from rospy_transport.node import discard_remapping
 
 CONNECT_SECONDS = 0.5
@@ -21,21 +21,20 @@ PATIENCE_SECONDS, POLL_SECONDS = 3.0, 0.01
 
 def has_all_subscribers(publisher: rospy.Publisher) -> bool:
     """Return whether the topic has subscribers and all of them are connected."""
-    return publisher.get_num_connections() > 0 and are_all_connected(publisher)
+    return publisher.get_num_connections() > 0 and not unconnected_subscribers(publisher)
 
 
-def are_all_connected(publisher: rospy.Publisher) -> bool:
-    """Return whether all current subscribers, if any, are connected."""
-    return publisher.get_num_connections() >= count_subscribers(publisher.resolved_name)
+def unconnected_subscribers(publisher: rospy.Publisher) -> List[str]:
+    """Return the nodes that subscribe to the topic but are not connected, so that a message misses them.
 
-
-def count_subscribers(topic: str) -> int:
-    """Return the number of other nodes that subscribe to a topic."""
-    master = rosgraph.Master(rospy.get_name())
+    They are compared by name: rospy also counts the connection of a node to itself.
+    """
+    master, topic = rosgraph.Master(rospy.get_name()), publisher.resolved_name
     with suppress(OSError, rosgraph.MasterException):
-        subscribers = dict(master.getSystemState()[1]).get(topic, ())
-        return sum(_is_running(master, name) for name in set(subscribers) - {rospy.get_name()})
-    return 0
+        nodes = dict(master.getSystemState()[1]).get(topic, ())
+        missing = {node for node in nodes if not is_connected(publisher, node)} - {rospy.get_name()}
+        return sorted(node for node in missing if _is_running(master, node))
+    return []
 
 
 def _is_running(master: rosgraph.Master, node: str) -> bool:
@@ -74,7 +73,7 @@ def flush_and_close(*publishers: rospy.Publisher, patience: float = PATIENCE_SEC
     transport.flush()  # messages that are batched until the end of the instant
     for publisher in publishers:
         # Queried each time, since subscribers leave as well when a whole graph shuts down.
-        while not are_all_connected(publisher) and time.monotonic() < deadline:
+        while unconnected_subscribers(publisher) and time.monotonic() < deadline:
             time.sleep(POLL_SECONDS)
         transport.remember_counts(publisher.resolved_name)
     sockets = [each for publisher in publishers for each in _flushed(publisher, deadline)]

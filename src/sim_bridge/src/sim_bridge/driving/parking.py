@@ -1,6 +1,6 @@
 """Parking: the physics of a scene is stopped while nothing moves."""
 
-from typing import Mapping, Sequence
+from typing import Mapping
 
 from sim_bridge.physics.engine import Engine
 from sim_bridge.physics.forces import Forces
@@ -49,13 +49,12 @@ class Parking:
             for robot in self._robots.values():
                 robot.wake(step)
 
-    def next_step(self, step: int, end: int, intervals: Sequence[int]) -> int:
-        """Return the next step at which a battery or a scripted body is due.
+    def next_step(self, step: int, end: int) -> int:
+        """Return the next step at which a battery is due.
 
         Args:
             step: Number of the present step.
             end: Number of the last step.
-            intervals: Steps between two moves of scripted bodies.
         """
-        every = [*intervals, *(robot.power_interval for robot in self._robots.values())]
+        every = [robot.power_interval for robot in self._robots.values()]
         return min([end, *(step - step % each + each for each in every)])

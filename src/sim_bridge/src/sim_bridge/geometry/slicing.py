@@ -45,17 +45,18 @@ def slice_shape(shape: Shape, pose: np.ndarray, bottom: float, top: float) -> It
     if points[:, 2].max() < bottom or points[:, 2].min() > top:
         return
     is_upright = abs(pose[2, 2]) > UPRIGHT
-    yield _outline(points if is_upright else _between(points, bottom, top))
+    yield points[: len(points) // 2, :2] if is_upright else _outline(_between(points, bottom, top))
 
 
 def _corners(shape: Union[Box, Cylinder]) -> np.ndarray:
-    """Return the corners (N, 3) of a box, or of a prism for a cylinder."""
+    """Return the corners (N, 3) of a box, or of a prism for a cylinder: those below, in order, then above."""
     if isinstance(shape, Cylinder):
-        circle = _circle(shape.radius)
-        half = np.full((len(circle), 1), shape.length / 2.0)
-        return np.vstack((np.hstack((circle, -half)), np.hstack((circle, half))))
-    signs = np.array(np.meshgrid([-0.5, 0.5], [-0.5, 0.5], [-0.5, 0.5])).reshape(3, -1).T
-    return signs * shape.size
+        base, height = _circle(shape.radius), shape.length
+    else:
+        length, width, height = shape.size
+        base = np.array(((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5))) * (length, width)
+    half = np.full((len(base), 1), 0.5 * height)
+    return np.vstack((np.hstack((base, -half)), np.hstack((base, half))))
 
 
 def _circle(radius: float) -> np.ndarray:

@@ -8,18 +8,16 @@ import numpy as np
 from planar import Pose2
 from sim_bridge.geometry.pose3 import from_pose2
 from sim_bridge.geometry.shapes import Cylinder
-from sim_bridge.people.forces import advance, social_forces
+from sim_bridge.people.forces import social_forces
 from sim_bridge.people.walkable_area import RESOLUTION, WalkableArea
 from sim_bridge.people.walker import Walker
-from sim_bridge.physics.kinematics import KinematicBodies
+from sim_bridge.people.walking import walk
+from sim_bridge.physics.kinematics import KinematicBodies, Steps
 from sim_bridge.robot import Robot
 from sim_bridge.world import Body, Collision, World
 
 # Rate at which pedestrians are moved [Hz].
 WALK_RATE = 25
-# Distance at which a goal is reached [m], decrease of the remaining path that counts as progress [m], and
-# time without progress after which a pedestrian goes to the next goal [s].
-GOAL_TOLERANCE, PROGRESS_DISTANCE, PATIENCE = 0.35, 0.3, 4.0
 # Radius of a robot for pedestrians, who keep a distance from it [m].
 ROBOT_RADIUS = 0.25
 NO_STATES = np.empty((0, 5))
@@ -48,83 +46,58 @@ class Crowd:
         self.rows = NO_STATES
         if not walkers:
             return
-        self._area = WalkableArea(world, Pose2(*walkers[0].goals_xy[0].tolist()))
-        goals = [len(walker.goals_xy) for walker in walkers]
-        self._first_goals = np.concatenate(([0], np.cumsum(goals)[:-1])).astype(int)
-        self._goals_xy = np.vstack([walker.goals_xy for walker in walkers])
-        self._goal_distances = self._area.distances_to(self._goals_xy)
-        self._groups = np.array([walker.group for walker in walkers])
+        area = WalkableArea(world, Pose2(*walkers[0].goals_xy[0].tolist()))
+        goals_xy = np.vstack([walker.goals_xy for walker in walkers])
+        counts = np.array([len(walker.goals_xy) for walker in walkers])
+        plans = [(walker.speed, walker.rest) for walker in walkers]
+        groups = np.array([walker.group for walker in walkers])
+        firsts = np.cumsum(counts) - counts
+        goal_distances = area.distances_to(goals_xy)
+        # Arguments of ``walk`` that do not change.
+        self._plans = np.array(plans), groups, firsts, counts, goals_xy, goal_distances
+        self._walkable = area.walls, area.origin_xy, RESOLUTION
         self._reset()
 
     def _reset(self) -> None:
         """Move all pedestrians to their first goals."""
         firsts = [(*walker.goals_xy[0], 0.0, 0.0, walker.radius) for walker in self._walkers]
         self.rows = np.array(firsts, dtype=float).reshape(-1, 5)
-        self._goal_indices = [0] * len(self._walkers)
-        # Time until which each rests, shortest remaining path so far [m], and time of the last progress.
-        self._rest_until = [walker.rest for walker in self._walkers]
-        self._shortest_remaining = [math.inf] * len(self._walkers)
-        self._last_progress = [0.0] * len(self._walkers)
+        self._walked_xy, self._walked = self.rows[None, :, :2].copy(), range(0)
+        self._goals = np.zeros(len(self._walkers), dtype=np.int64)
+        self._progress = np.array([(walker.rest, math.inf, 0.0) for walker in self._walkers])
 
-    def update(
-        self, engine: KinematicBodies, step: int, rate: int, stamp: float, robots: Iterable[Robot]
-    ) -> None:
+    def update(self, engine: KinematicBodies, steps: Steps, robots: Iterable[Robot]) -> None:
         """Move the pedestrians, if due; at time 0 all return to their first goals.
 
         Args:
             engine: Holds their bodies.
-            step: Number of the next physics step.
-            rate: Physics steps per second.
-            stamp: Simulated time [s].
+            steps: Physics steps before which they move, in which robots do not.
             robots: The robots that they avoid.
         """
-        every = max(rate // WALK_RATE, 1)
-        if not self._walkers or step % every:
+        if not self._walkers or not (due := steps.due(WALK_RATE)):
             return
-        if stamp == 0.0:
+        stamps = steps.stamps(due)
+        if stamps[0] == 0.0:
             self._reset()
-        self._select_goals(stamp)
-        speeds = [
-            0.0 if stamp < until else walker.speed for walker, until in zip(self._walkers, self._rest_until)
-        ]
-        corner = np.concatenate((self._area.origin_xy, np.zeros(3)))
-        states = self.rows - corner
-        advance(
-            states,
-            np.array(speeds),
-            np.array([first + index for first, index in zip(self._first_goals, self._goal_indices)]),
-            self._groups,
-            rows_of(robots) - corner,
-            self._area.walls,
-            self._goal_distances,
-            RESOLUTION,
-            every / rate,
-        )
-        self.rows = states + corner
+        rows, seconds = self.rows.copy(), due.step / steps.rate
+        state = rows, self._goals, self._progress, rows_of(robots)
+        walked_xy = walk(*state, stamps, seconds, *self._plans, *self._walkable)
+        self._walked_xy, self._walked = np.concatenate((self.rows[None, :, :2], walked_xy)), due
+        self.rows = rows
         positions = [(link, x, y) for link, (x, y, *_) in zip(self.links, self.rows.tolist())]
         # Bodies may have been deleted.
         engine.set_positions(each for each in positions if engine.has_link(each[0]))
 
-    def _select_goals(self, stamp: float) -> None:
-        """Choose the next goal of pedestrians that have rested at a goal or that make no progress."""
-        for number, walker in enumerate(self._walkers):
-            x, y = self.rows[number, :2].tolist()
-            goal = self._first_goals[number] + self._goal_indices[number]
-            goal_x, goal_y = self._goals_xy[goal].tolist()
-            has_arrived = math.hypot(goal_x - x, goal_y - y) < GOAL_TOLERANCE
-            remaining = self._area.remaining_distance(self._goal_distances[goal], x, y)
-            if (
-                has_arrived
-                or stamp < self._rest_until[number]
-                or remaining < self._shortest_remaining[number] - PROGRESS_DISTANCE
-            ):
-                self._shortest_remaining[number], self._last_progress[number] = remaining, stamp
-            if stamp < self._rest_until[number] or len(walker.goals_xy) == 1:
-                continue
-            if has_arrived or stamp - self._last_progress[number] > PATIENCE:
-                self._goal_indices[number] = (self._goal_indices[number] + 1) % len(walker.goals_xy)
-                self._shortest_remaining[number], self._last_progress[number] = math.inf, stamp
-                self._rest_until[number] = stamp + walker.rest if has_arrived else stamp
+    def positions_before(self, steps: range) -> np.ndarray:
+        """Return the positions (M, N, 2) of the pedestrians before physics steps (M,) [m].
+
+        Args:
+            steps: Numbers of steps in the interval of the last update.
+        """
+        if not self._walkers:
+            return np.empty((len(steps), 0, 2))
+        numbers = np.arange(steps.start, steps.stop, steps.step)
+        return self._walked_xy[np.searchsorted(self._walked, numbers, side="right")]
 
 
 def rows_of(robots: Iterable[Robot]) -> np.ndarray:

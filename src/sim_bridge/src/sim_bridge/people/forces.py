@@ -24,38 +24,6 @@ GROUP_DISTANCE, COHESION = 0.6, 1.5
 MAX_SPEED_RATIO, MAX_REST_SPEED = 1.3, 0.5
 
 
-def advance(
-    rows: np.ndarray,
-    speeds: np.ndarray,
-    goals: np.ndarray,
-    groups: np.ndarray,
-    robots: np.ndarray,
-    walls: np.ndarray,
-    goal_distances: np.ndarray,
-    size: float,
-    seconds: float,
-) -> np.ndarray:
-    """Advance pedestrians by one time step.
-
-    Args:
-        rows: States (N, 5), changed in place; positions are relative to the corner of the grid.
-        speeds: Preferred speeds (N,) [m/s]; 0 for an agent at rest.
-        goals: Indices (N,) of the agents' goals in ``goal_distances``.
-        groups: Numbers (N,) of the agents' groups; 0 for none.
-        robots: States (M, 5) of robots.
-        walls: Distance (rows, cols) of each cell to the nearest solid [m].
-        goal_distances: Path length (G, rows, cols) from each cell to each goal [m].
-        size: Size of a cell [m].
-        seconds: Time step [s].
-
-    Returns:
-        The forces (N, 2) on the agents, without those towards their goals [m/s^2].
-    """
-    forces = _forces(rows, groups, robots, walls, size)
-    _move(rows, speeds, goals, forces, walls, goal_distances, size, seconds)
-    return forces
-
-
 def social_forces(own: np.ndarray, others: np.ndarray) -> np.ndarray:
     """Return the social forces of other agents on one agent.
 
@@ -70,8 +38,16 @@ def social_forces(own: np.ndarray, others: np.ndarray) -> np.ndarray:
 
 
 @numba.njit(cache=True)
-def _forces(rows, groups, robots, walls, size):
-    """Return the forces (N, 2) of other agents, of walls and of the own group."""
+def forces_on(rows, groups, robots, walls, size):
+    """Return the forces (N, 2) of other agents, of walls and of the own group [m/s^2].
+
+    Args:
+        rows: States (N, 5); positions are relative to the corner of the grid.
+        groups: Numbers (N,) of the agents' groups; 0 for none.
+        robots: States (M, 5) of robots.
+        walls: Distance (rows, cols) of each cell to the nearest solid [m].
+        size: Size of a cell [m].
+    """
     forces = np.zeros((rows.shape[0], 2))
     for i in range(rows.shape[0]):
         x, y = _wall_force(rows[i, 0], rows[i, 1], rows[i, 4], walls, size)
@@ -94,8 +70,19 @@ def _forces(rows, groups, robots, walls, size):
 
 
 @numba.njit(cache=True)
-def _move(rows, speeds, goals, forces, walls, goal_distances, size, seconds):
-    """Update velocities, then positions; limits the speed and prevents agents from entering walls."""
+def move(rows, speeds, goals, forces, walls, goal_distances, size, seconds):
+    """Update velocities, then positions; limits the speed and prevents agents from entering walls.
+
+    Args:
+        rows: States (N, 5), changed in place; positions are relative to the corner of the grid.
+        speeds: Preferred speeds (N,) [m/s]; 0 for an agent at rest.
+        goals: Indices (N,) of the agents' goals in ``goal_distances``.
+        forces: Forces (N, 2) on the agents, without those towards their goals [m/s^2].
+        walls: Distance (rows, cols) of each cell to the nearest solid [m].
+        goal_distances: Path length (G, rows, cols) from each cell to each goal [m].
+        size: Size of a cell [m].
+        seconds: Time step [s].
+    """
     for i in range(rows.shape[0]):
         ahead_x, ahead_y = _goal_direction(rows[i, 0], rows[i, 1], goal_distances[goals[i]], size)
         v_x = rows[i, 2] + seconds * (forces[i, 0] + (speeds[i] * ahead_x - rows[i, 2]) / RELAXATION)

@@ -51,17 +51,6 @@ class WalkableArea:
         distances[~np.isfinite(distances)] = UNREACHABLE
         return distances.reshape(-1, *self.walls.shape)
 
-    def remaining_distance(self, distances: np.ndarray, x: float, y: float) -> float:
-        """Return the path length from a point to a goal [m].
-
-        Args:
-            distances: Path length (rows, cols) from each cell to the goal [m], from ``distances_to``.
-            x: Position of the point in the world [m].
-            y: Position of the point in the world [m].
-        """
-        ((row, col),) = self._grid.cells_of([[x, y]])
-        return float(distances[row, col])
-
     def _node_at(self, x: float, y: float) -> int:
         ((row, col),) = self._grid.cells_of([[x, y]])
         if not (self._grid.contains(np.array([[row, col]]))[0] and self._is_open[row, col]):

@@ -1,8 +1,8 @@
-"""Pose and velocity of frames, and the contract of bodies that scripts move."""
+"""Pose and velocity of frames, the contract of bodies that scripts move, and the steps at which they do."""
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Iterable, Protocol, Tuple
+from typing import Iterable, NamedTuple, Protocol, Tuple
 
 import numpy as np
 
@@ -68,3 +68,33 @@ class KinematicBodies(Protocol):
         Args:
             positions: Link name, x and y in the world frame [m] of each body.
         """
+
+
+class Steps(NamedTuple):
+    """Consecutive physics steps.
+
+    Attributes:
+        first: Number of the first step since the rate was set.
+        end: Number of the step after the last.
+        rate: Physics steps per second.
+        origin: Simulated time at which the rate was set [s].
+    """
+
+    first: int
+    end: int
+    rate: int
+    origin: float
+
+    def due(self, rate: int) -> range:
+        """Return the steps at which something is due that happens ``rate`` times per second [Hz]."""
+        every = interval(self.rate, rate)
+        return range(-(-self.first // every) * every, self.end, every)
+
+    def stamps(self, steps: range) -> np.ndarray:
+        """Return the simulated time (N,) of steps [s]."""
+        return self.origin + np.arange(steps.start, steps.stop, steps.step) / self.rate
+
+
+def interval(physics_rate: int, rate: int) -> int:
+    """Return the number of physics steps between two of ``rate`` events per second [Hz]."""
+    return max(physics_rate // rate, 1)

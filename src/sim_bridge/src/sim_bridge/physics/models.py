@@ -2,10 +2,11 @@
 
 from typing import Dict, Iterable, List, Sequence
 
+from planar import Pose2
 from planar.config.hints import hint
 from planar.geometry.limits import MAX_COORDINATE
 from sim_bridge.errors import UnknownEntityError, WorldError
-from sim_bridge.geometry.pose3 import inverse
+from sim_bridge.geometry.pose3 import from_pose2, inverse
 from sim_bridge.physics.engine import Engine, MassProperties
 from sim_bridge.physics.kinematics import KinematicState, at_rest
 from sim_bridge.physics.model_joints import ModelJoints
@@ -102,6 +103,16 @@ class Models:
         link = self.links_of(name)[0]
         state = self._engine.state_of(link)
         return state.of_frame(inverse(self._bodies[link].pose_in_model)) if link in self._bodies else state
+
+    def move_level(self, name: str, pose: Pose2) -> None:
+        """Put a model, upright and at rest, elsewhere at its height; nothing happens if there is none.
+
+        Args:
+            name: Name of the model.
+            pose: Pose in the world.
+        """
+        if name in self.names():
+            self.set_state(name, at_rest(from_pose2(pose, z=float(self.state(name).pose[2, 3]))))
 
     def set_state(self, name: str, state: KinematicState) -> None:
         """Set the pose and velocity of a model with all its links.

@@ -16,8 +16,8 @@ LOOK_SECONDS = 0.0003
 LOOKS = 2
 # Messages of a node that floods do not hold the simulation: of so many looks at one barrier they may.
 MOST_NEWS = 20
-# Time after which a node that does not rest is given up, and for which it must then rest until it is waited
-# for again [wall s].
+# Time after which a node that does not rest is given up, and time in which it must then rest at most of the
+# looks to be waited for again [wall s].
 PATIENCE_SECONDS, OTHERS_PATIENCE_SECONDS, RECOVERY_SECONDS = 5.0, 0.5, 2.0
 
 
@@ -40,6 +40,15 @@ class _Barrier:
     news: int = 0
 
 
+@dataclass
+class _Absence:
+    """Looks at a node that is given up: since when [wall s], how many, and at how many it was busy."""
+
+    since: float
+    looks: int = 0
+    busy: int = 0
+
+
 class RestBarrier:
     """Decides whether simulated time may pass beside nodes that are known only by whether they rest.
 
@@ -58,7 +67,7 @@ class RestBarrier:
     def __init__(self, patience: float = PATIENCE_SECONDS):
         self._patience = patience
         self._barrier: Optional[_Barrier] = None
-        self.given_up: Dict[str, float] = {}
+        self.given_up: Dict[str, _Absence] = {}
 
     def reset(self) -> None:
         """Leave the barrier, as simulated time restarts."""
@@ -96,7 +105,7 @@ class RestBarrier:
             barrier.quiet_since = wall
             patience = self._patience if barrier.busy in awaited else OTHERS_PATIENCE_SECONDS
             if wall - barrier.begun > patience:
-                self.given_up[barrier.busy] = wall
+                self.given_up[barrier.busy] = _Absence(wall)
         barrier.rests = barrier.rests + 1 if barrier.busy is None else 0
         if barrier.rests < LOOKS or wall - barrier.quiet_since < quiet:
             return False
@@ -108,11 +117,14 @@ class RestBarrier:
         return (self._barrier.busy or "") if self._barrier else ""
 
     def _recover(self, wall: float, nodes: Mapping[str, Callable[[], bool]]) -> None:
-        """Wait again for nodes that have rested at each look for some time."""
-        for name, busy_at in list(self.given_up.items()):
+        """Wait again for nodes that have rested at most looks for some time: the clock wakes all of them."""
+        for name, absence in list(self.given_up.items()):
             if name not in nodes:
                 del self.given_up[name]
-            elif not nodes[name]():
-                self.given_up[name] = wall
-            elif wall - busy_at > RECOVERY_SECONDS:
-                del self.given_up[name]
+                continue
+            absence.looks, absence.busy = absence.looks + 1, absence.busy + (not nodes[name]())
+            if wall - absence.since > RECOVERY_SECONDS:
+                if 2 * absence.busy > absence.looks:
+                    self.given_up[name] = _Absence(wall)
+                else:
+                    del self.given_up[name]

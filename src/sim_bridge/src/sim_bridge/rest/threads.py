@@ -53,6 +53,20 @@ class ProcessThreads:
         return stat[stat.rfind(b")") + 2] in WAITING_STATES
 
 
+def has_ended(pid: int, proc: Path = PROC) -> bool:
+    """Return whether a process has ended, also if its parent has not noticed yet.
+
+    Args:
+        pid: Process.
+        proc: Folder of the kernel's process information.
+    """
+    try:
+        stat = (proc / str(pid) / "stat").read_bytes()
+    except OSError:
+        return True
+    return stat[stat.rfind(b")") + 2] in b"ZX"
+
+
 def is_native(pid: int, proc: Path = PROC) -> bool:
     """Return whether a process runs a program that is not Python, such as a node of roscpp.
 

@@ -3,7 +3,7 @@
 import threading
 from collections import deque
 from concurrent.futures import CancelledError, Future
-from typing import Callable, Collection, Deque, Tuple, TypeVar
+from typing import Callable, Collection, Deque, NamedTuple, TypeVar
 
 import rospy
 
@@ -12,39 +12,53 @@ from planar_ros.lockstep.transport import caller
 T = TypeVar("T")
 
 
+class _Call(NamedTuple):
+    """A call: what to run, what receives the result, the synchronised node that called, whether it acts."""
+
+    function: Callable
+    future: Future
+    caller: str
+    acts: bool
+
+
 class CallQueue:
     """Calls that are run between two steps of the simulation; callers get the result or the error.
 
     Attributes:
         submitted: Number of calls so far.
+        acted: Number of calls run so far that may have changed the scene.
     """
 
     def __init__(self):
-        self._pending: Deque[Tuple[Callable, Future, str]] = deque()
+        self._pending: Deque[_Call] = deque()
         self._changed = threading.Condition()
         self._is_closed = self._has_new = False
-        self.submitted = 0
+        self.submitted = self.acted = 0
 
-    def call(self, function: Callable[[], T]) -> T:
+    def call(self, function: Callable[[], T], acts: bool = True) -> T:
         """Run a function between two steps, wait for it, and return its result.
+
+        Args:
+            function: The function.
+            acts: Whether it may change the scene.
 
         Raises:
             rospy.ServiceException: The simulation is shutting down.
             Exception: What the function raises.
         """
         try:
-            return self.submit(function).result()
+            return self.submit(function, acts).result()
         except CancelledError:
             raise rospy.ServiceException("the simulation is shutting down") from None
 
-    def submit(self, function: Callable[[], T]) -> "Future[T]":
-        """Submit a function to be run between two steps, without waiting for it."""
+    def submit(self, function: Callable[[], T], acts: bool = True) -> "Future[T]":
+        """Submit a function to be run between two steps, without waiting for it; arguments as ``call``."""
         future: Future[T] = Future()
         with self._changed:
             if self._is_closed:
                 future.cancel()
             else:
-                self._pending.append((function, future, caller()))
+                self._pending.append(_Call(function, future, caller(), acts))
             self._has_new = True
             self.submitted += 1
             self._changed.notify_all()
@@ -62,13 +76,14 @@ class CallQueue:
         if not self._pending:
             return
         with self._changed:
-            due = [entry for entry in self._pending if entry[2] in awaited or entry[2] not in members]
-            self._pending = deque(entry for entry in self._pending if entry not in due)
-        for function, future, _ in due:
+            due = [call for call in self._pending if call.caller in awaited or call.caller not in members]
+            self._pending = deque(call for call in self._pending if call not in due)
+        for call in due:
+            self.acted += call.acts
             try:
-                future.set_result(function())
+                call.future.set_result(call.function())
             except Exception as error:
-                future.set_exception(error)
+                call.future.set_exception(error)
 
     @property
     def has_pending(self) -> bool:
@@ -90,5 +105,5 @@ class CallQueue:
         with self._changed:
             self._is_closed = True
             while self._pending:
-                self._pending.popleft()[1].cancel()
+                self._pending.popleft().future.cancel()
             self._changed.notify_all()

@@ -33,10 +33,13 @@ class CommandTopics:
         robot: Name of the robot, for the log.
         namespace: Namespace of the topics.
         topics: Names of the topics.
+
+    Attributes:
+        received: Number of commands received.
     """
 
     def __init__(self, robot: str, namespace: str, topics):
-        self._robot = robot
+        self._robot, self.received = robot, 0
         self._command: Optional[Twist2] = None
         self._connections: List = []
         for topic in topics:
@@ -63,6 +66,7 @@ class CommandTopics:
         )  # fmt: skip
 
     def _twist(self, message: Twist) -> Twist2:
+        self.received += 1
         twist = Twist2(message.linear.x, message.angular.z, message.linear.y)
         if not twist.is_finite():
             rospy.logwarn_throttle(1.0, f"{self._robot}: velocity command is not finite: the robot stops")

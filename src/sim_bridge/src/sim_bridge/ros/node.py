@@ -3,9 +3,11 @@
 import dataclasses
 import threading
 from itertools import chain
+from pathlib import Path
 from typing import Any, Callable, Dict, List, Mapping, Tuple
 
 import rospy
+from rospkg import RosPack
 from visualization_msgs.msg import Marker
 
 from planar import PlanarError, Pose2
@@ -25,6 +27,7 @@ from sim_bridge.errors import WorldError
 from sim_bridge.geometry.pose3 import to_pose2
 from sim_bridge.noise import noise_named
 from sim_bridge.pacing import Pacer
+from sim_bridge.rest.rules import parse_rules, read_known_nodes
 from sim_bridge.robots import robot_named
 from sim_bridge.ros.call_queue import CallQueue
 from sim_bridge.ros.description import find_file, model_folders
@@ -33,8 +36,11 @@ from sim_bridge.ros.gazebo import GazeboInterface
 from sim_bridge.ros.gazebo.server import NAMESPACE
 from sim_bridge.ros.performance import Performance
 from sim_bridge.ros.robot_manager import RobotManager
+from sim_bridge.ros.timing.idle_time import IdleTime
 from sim_bridge.ros.timing.lock_step import LockStep
+from sim_bridge.ros.timing.node_search import NodeSearch
 from sim_bridge.ros.timing.paced_nodes import PacedNodes
+from sim_bridge.ros.timing.stamped_messages import StampedMessages
 from sim_bridge.ros.timing.time_control import TimeControl
 from sim_bridge.scene import Scene
 from sim_bridge.sdf import load_world
@@ -81,10 +87,12 @@ class Bridge:
         pacer = Pacer(settings.speed, wait_for)
         self._lock_step = LockStep(wait_for, static_publishers, settings.latency, self._calls)
         self._performance = Performance()
-        bystanders = tuple(f"/{name}" for name in settings.bystanders.split())
-        paced = PacedNodes(self._calls, self._lock_step.add_remark, settings.pace_all, bystanders)
-        self._time = TimeControl(self._scene, pacer, self._lock_step, paced, self._calls, clock_steps)
+        paced = self._paced_nodes(settings, pacer)
         self._robots = RobotManager(self._scene, self._calls, joint_steps)
+        idle = IdleTime(
+            self._scene, self._robots, self._faults, self._lock_step, self._calls, settings.skip_idle
+        )
+        self._time = TimeControl(self._scene, pacer, self._lock_step, paced, idle, self._calls, clock_steps)
         for start in robots:
             self._robots.add(*start)
         # As Gazebo does: nodes that start from now on use simulated time.
@@ -113,6 +121,18 @@ class Bridge:
             self._time.close()
             self._calls.close()
             self._scene.close()
+
+    def _paced_nodes(self, settings: BridgeSettings, pacer: Pacer) -> PacedNodes:
+        file = settings.known_file or Path(RosPack().get_path("sim_bridge"), "config", "known_nodes.yaml")
+        rules, known = parse_rules(settings.pace), read_known_nodes(Path(file))
+        bystanders = tuple(f"/{name}" for name in settings.bystanders.split())
+        messages = StampedMessages(
+            pacer.follow,
+            lambda name, stamp: self._calls.submit(lambda: pacer.report(name, stamp), acts=False),
+        )
+        search = NodeSearch(rules, known, bystanders)
+        remark = self._lock_step.add_remark
+        return PacedNodes(self._calls, remark, rules, search, messages, settings.pace_all)
 
     def _step(self):
         self._faults.update(self._scene, self._robots.step())

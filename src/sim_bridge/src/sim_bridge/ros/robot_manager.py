@@ -75,6 +75,17 @@ class RobotManager:
         """Longest time between two odometry messages of a robot [simulated s]."""
         return max((topics.odometry_seconds for topics in self._robots.values()), default=0.0)
 
+    @property
+    def commands_received(self) -> int:
+        """Number of velocity commands that the robots have received."""
+        return sum(topics.commands_received for topics in self._robots.values())
+
+    def skip(self, count: int) -> None:
+        """Advance the parked scene by ``count`` steps in which nothing is measured or published."""
+        self._scene.skip(count)
+        for topics in self._robots.values():
+            topics.skip(count)
+
     def step(self) -> Mapping[str, StepResult]:
         """Step the scene by one odometry period; return the result of each robot."""
         commands = {name: topics.pop_command() for name, topics in self._robots.items()}

@@ -75,6 +75,15 @@ class RobotTopics:
         """Time between two odometry messages [simulated s]."""
         return self._odom_steps * self._scene.step_seconds
 
+    @property
+    def commands_received(self) -> int:
+        """Number of velocity commands received."""
+        return self._commands.received
+
+    def skip(self, count: int) -> None:
+        """Keep the rates in step with time, as ``count`` steps of the scene are skipped."""
+        self._steps += count
+
     def pop_command(self) -> Optional[Twist2]:
         """Return the command received since the last call, if any; to be called before a step."""
         self._sensors.enable_subscribed()

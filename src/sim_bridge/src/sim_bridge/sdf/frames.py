@@ -23,6 +23,8 @@ class SdfFrames:
     def __init__(self, frames_of: Callable[[str], Optional["SdfFrames"]] = lambda _name: None):
         self._frames_of = frames_of
         self._declared: Dict[str, Tuple[Element, str, np.ndarray]] = {}
+        # Poses in the root of declared frames that have been asked for: a link may have thousands of parts.
+        self._poses: Dict[str, np.ndarray] = {}
 
     def declare(self, name: str, element: Element, parent: str = "", inside: np.ndarray = IDENTITY) -> None:
         """Declare a frame.
@@ -34,6 +36,7 @@ class SdfFrames:
             inside: Pose (4, 4), in the declared frame, of the frame that <pose> places.
         """
         self._declared[name] = (element, parent, inverse(inside))
+        self._poses.clear()
 
     def pose_of(self, element: Element, parent: str = "") -> np.ndarray:
         """Return the pose (4, 4) of an element in the root.
@@ -65,8 +68,10 @@ class SdfFrames:
         if name in open_names:
             raise referrer.error(f"the pose of frame '{name}' depends on itself")
         if name in self._declared:
-            element, parent, inside = self._declared[name]
-            return self._placed(element, parent, open_names | {name}) @ inside
+            if name not in self._poses:
+                element, parent, inside = self._declared[name]
+                self._poses[name] = self._placed(element, parent, open_names | {name}) @ inside
+            return self._poses[name]
         outer, _, inner = name.partition("::")
         nested = self._frames_of(outer) if inner else None
         if nested is None or outer not in self._declared:

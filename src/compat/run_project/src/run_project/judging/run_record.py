@@ -100,6 +100,7 @@ class ProjectRunRecord:
         goals: Goal id -> goal, in the order of sending.
         markers: Descriptions of marker events.
         collisions: Name of the body at each contact.
+        pace_rules: How simulated time passes beside each node of the project, in words.
         distance_driven: Path length of the robot without teleports [m].
         simulated_time: Current time [s].
         last_event_time: Simulated time of the last goal or marker event [s].
@@ -111,6 +112,7 @@ class ProjectRunRecord:
     goals: Dict[str, ProjectGoal] = field(default_factory=dict)
     markers: List[str] = field(default_factory=list)
     collisions: List[str] = field(default_factory=list)
+    pace_rules: List[str] = field(default_factory=list)
     distance_driven: float = 0.0
     simulated_time: float = 0.0
     last_event_time: float = 0.0
@@ -185,6 +187,7 @@ class ProjectRunRecord:
             "markers": self.markers,
             "distance_driven": round(self.distance_driven, 2),
             "collisions": self.collisions,
+            "pace": self.pace_rules,
         }
 
     def _on_clock(self, event: ClockAdvanced) -> None:

@@ -5,6 +5,7 @@ from typing import Callable, Iterator, Set
 
 import rosgraph
 import rospy
+from std_msgs.msg import String
 from visualization_msgs.msg import Marker, MarkerArray
 
 from evaluation.event_stream import EventStream
@@ -61,11 +62,15 @@ class Observer:
     def start(self) -> None:
         """Subscribe to the topics of every run. This process must be a ROS node."""
         self._topics.open((CLOCK, CONTACTS, TRUTH, ESTIMATE))
+        rospy.Subscriber("/simulation/pace", String, self._on_pace)
         # Before the project starts: some nodes publish once, as soon as they have a subscriber.
         self._subscribe_markers(MARKERS)
         self._subscribe_goals("/move_base/goal")
         self._subscribe_results("/move_base/result")
         self._seen.update((MARKERS, "/move_base/goal", "/move_base/result"))
+
+    def _on_pace(self, message: String) -> None:
+        self.record.pace_rules = message.data.splitlines()
 
     def discover_topics(self) -> None:
         """Subscribe to goal, result and marker topics that are new on the master."""

@@ -16,7 +16,7 @@ from run_project.real_time_limit import RealTimeLimit
 from run_project.ros.observer import Observer
 from run_project.ros.processes import BusyProcesses, program_of, waits_for_input
 from run_project.ros.scripted_user import ScriptedUser
-from run_project.ros.simulator_speed import set_simulator_speed
+from run_project.ros.simulator_speed import SimulatorSpeed
 from run_project.stand_ins.terminal import WindowLogs
 from supervision.display import Display
 from supervision.errors import LaunchError
@@ -90,7 +90,7 @@ class ProjectRun:
         self._last_event_wall = time.monotonic()
         self.is_over_time = False
         self._busy = BusyProcesses()
-        self._limit = RealTimeLimit(float(str(parameters["/gazebo/speed"])), set_simulator_speed)
+        self._limit = RealTimeLimit(float(str(parameters["/gazebo/speed"])), SimulatorSpeed().set)
 
     def __enter__(self) -> "ProjectRun":
         adopt_orphans()

@@ -53,6 +53,10 @@ class FaultServer:
         for name, observation in islice(observations.items(), 1):
             self._injector.update(self._now, FaultContext(scene, name, observation.base_in_world))
 
+    def are_inactive(self, start: float, end: float) -> bool:
+        """Return whether no fault is active at any time between two simulated times [s]."""
+        return self._injector.are_inactive(start, end)
+
     def _add(self, kind: str, seconds: float, strength: float) -> None:
         self._injector.add(Fault(kind, self._now, self._now + seconds, strength))
 

@@ -6,6 +6,7 @@ import numpy as np
 import rospy
 from rosgraph.names import ns_join
 
+from planar_ros.lockstep.transport import is_read_only
 from sim_bridge.errors import UnknownEntityError
 from sim_bridge.geometry.pose3 import inverse
 from sim_bridge.physics.kinematics import KinematicState
@@ -38,8 +39,8 @@ class GazeboServer:
             kind: Type of the service.
             answer: Returns the response to a request.
         """
-        full_name = ns_join(NAMESPACE, name)
-        rospy.Service(full_name, kind, lambda request: self.between_steps(lambda: answer(request)))
+        full_name, acts = ns_join(NAMESPACE, name), not is_read_only(name)
+        rospy.Service(full_name, kind, lambda request: self._calls.call(lambda: answer(request), acts))
 
     def serve_in_thread(self, name: str, kind, answer: Callable) -> None:
         """Advertise a slow service that is handled in its own thread, while the simulation runs.

@@ -44,7 +44,7 @@ class ConnectionCheck:
                 for topic, senders in published.items()
                 for sender in senders
                 for receiver in subscribed.get(topic, ())
-                if sender in members and (receiver in members or receiver in observers)
+                if sender != receiver and sender in members and (receiver in members or receiver in observers)
             }
             subscribers = set(members).intersection(subscribed.get(STATIC_TOPIC, ()))
             required.update(
@@ -81,18 +81,19 @@ class ConnectionCheck:
             return None
         return pid if pid and pid != os.getpid() else None
 
-    def registrations(self) -> NodesByName:
-        """Return the topics and services of all nodes, by the name of the node; empty without the master."""
+    def is_elsewhere(self, name: str) -> bool:
+        """Return whether a node runs on another machine."""
         try:
-            tables = self._state()
+            return not _is_local(_query(self._master, "lookupNode", name))
         except _UNAVAILABLE:
-            return {}
-        found: NodesByName = {}
-        for table in tables:
-            for entry, names in table.items():
-                for name in names:
-                    found.setdefault(name, []).append(entry)
-        return found
+            return False
+
+    def graph(self) -> Tuple[NodesByName, NodesByName, NodesByName]:
+        """Return the nodes by published topic, by subscribed topic, by service; empty without the master."""
+        try:
+            return self._state()
+        except _UNAVAILABLE:
+            return {}, {}, {}
 
     def _state(self) -> Tuple[NodesByName, NodesByName, NodesByName]:
         published, subscribed, services = _query(self._master, "getSystemState")

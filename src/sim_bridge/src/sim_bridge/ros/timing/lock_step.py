@@ -55,7 +55,7 @@ class LockStep:
         self._name = rospy.get_name()
         self._wait_for = frozenset(f"/{name}" for name in wait_for)
         rospy.set_param(WAIT_FOR_PARAMETER, sorted(self._wait_for))
-        static = sorted(f"/{name}" for name in static_publishers)
+        self._static_publishers = static = sorted(f"/{name}" for name in static_publishers)
         rospy.set_param(STATIC_PUBLISHERS_PARAMETER, static)
         self._coordinator = LockStepCoordinator(latency)
         self._inbox = MessageBuffer(False, self._on_unsynchronised)
@@ -125,6 +125,37 @@ class LockStep:
             self._coordinator.add_member(*self._joining.popitem())
         self._begin_tick(stamp)
         return True
+
+    def is_tick_due(self, stamp: float) -> bool:
+        """Return whether a tick begins at ``stamp`` [simulated s]."""
+        return self._coordinator.tick_due(stamp)
+
+    @property
+    def period(self) -> float:
+        """Time between two ticks [simulated s]."""
+        return self._coordinator.period
+
+    @property
+    def receivers(self) -> FrozenSet[str]:
+        """Names of the nodes known to receive messages: synchronised nodes, observers, static publishers."""
+        return frozenset((self._name, *self.members, *self._connections.observers, *self._static_publishers))
+
+    def is_tick(self, stamp: float) -> bool:
+        """Return whether the latest tick began at ``stamp`` [simulated s]."""
+        return bool(self.members) and self._coordinator.is_tick(stamp)
+
+    def deliver(self, stamp: float) -> bool:
+        """Deliver the messages of the latest tick before their time; return False until all have answered.
+
+        Args:
+            stamp: Present simulated time [s].
+        """
+        return self._delivered or self._deliver(stamp)
+
+    def hold(self, until: float) -> None:
+        """Begin no tick before ``until`` [simulated s]; the messages of the latest one are delivered."""
+        assert self._delivered, "messages would wait meanwhile"
+        self._coordinator.hold(until)
 
     def reset_time(self) -> None:
         """Restart simulated time at 0."""
@@ -204,10 +235,10 @@ class LockStep:
         return self.members | self._wait_for | {self._name} if self.members else frozenset()
 
     def _on_unsynchronised(self, text: str) -> None:
-        self._calls.submit(lambda: self.add_remark(text))
+        self._calls.submit(lambda: self.add_remark(text), acts=False)
 
     def _on_answer(self, message: Answer) -> None:
-        self._calls.submit(lambda: self._process_answer(message))
+        self._calls.submit(lambda: self._process_answer(message), acts=False)
 
     def _process_answer(self, message: Answer) -> None:
         name = message.header.frame_id

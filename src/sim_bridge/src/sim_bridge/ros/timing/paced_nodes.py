@@ -1,10 +1,10 @@
-"""Unsynchronised nodes, such as the official amcl and move_base, beside which time passes when they rest."""
+"""Unsynchronised nodes, such as the official amcl and move_base, beside which time passes by rules."""
 
-import threading
 import time
-from typing import Callable, Dict, FrozenSet, List, Optional, Tuple
+from typing import Callable, Dict, FrozenSet, List, Mapping, Set
 
 import rospy
+from std_msgs.msg import String
 
 from rospy_transport.connections import has_unread
 from sim_bridge.rest.barrier import (
@@ -14,12 +14,15 @@ from sim_bridge.rest.barrier import (
     SETTLING_QUIET_SECONDS,
     RestBarrier,
 )
+from sim_bridge.rest.rules import PaceRule
 from sim_bridge.rest.threads import ProcessThreads
 from sim_bridge.ros.call_queue import CallQueue
-from sim_bridge.ros.timing.connection_check import ConnectionCheck
+from sim_bridge.ros.timing.connection_monitor import CONNECT_SECONDS
+from sim_bridge.ros.timing.node_search import MASTER, FoundNode, NodeSearch
+from sim_bridge.ros.timing.stamped_messages import StampedMessages
 
-# Time between two searches for new nodes [wall s], and the name of the master, which is no node.
-SEARCH_SECONDS, MASTER = 0.2, ""
+# Latched: the rule of each node, one a line.
+PACE_TOPIC = "/simulation/pace"
 # Name under which the synchronised nodes are waited for, in whose messages the others may have a part.
 SYNCHRONISED = "synchronised nodes"
 # Time without a new topic or service after which nodes have started [simulated s].
@@ -27,54 +30,78 @@ SETTLING_SECONDS = 2.0
 
 
 class PacedNodes:
-    """Holds simulated time until the nodes rest; called in the thread that owns the scene.
+    """Holds simulated time by the rules of the nodes; called in the thread that owns the scene.
 
     Each step has two barriers, before its time is published on ``/clock`` and after: what wakes up by the
     time finds the step's data processed.
 
     While nodes start, all others and the master have to rest as well, for a node that waits for an answer of
     another one rests, too. A node that runs on another machine, has ended or does not rest is not waited for;
-    the simulation is then not faster than real time, if it is one of those to wait for.
+    the simulation is then not faster than real time, if it is one of those to wait for, or takes part.
 
     Args:
         calls: Queue of the thread that owns the scene; what arrives there may not be the last.
         remark: Called with a reason why the run may not be repeatable.
+        rules: Rules by the name of the node; such nodes are always waited for.
+        search: Finds the nodes and their rules.
+        messages: Receives the messages of nodes that are paced by their stamps.
         paces_all: Wait for all nodes of this machine, not only while nodes start.
-        bystanders: Beginnings of the names, with slash, of nodes that are never waited for.
     """
 
     def __init__(
         self,
         calls: CallQueue,
         remark: Callable[[str], None],
+        rules: Mapping[str, PaceRule],
+        search: NodeSearch,
+        messages: StampedMessages,
         paces_all: bool = False,
-        bystanders: Tuple[str, ...] = (),
     ):
-        self._calls, self._remark = calls, remark
-        self._paces_all, self._bystanders = paces_all, bystanders
+        self._calls, self._remark, self._search, self._messages = calls, remark, search, messages
+        self._paces_all, self._named = paces_all, frozenset(rules)
         self._barrier = RestBarrier()
         self._threads: Dict[str, ProcessThreads] = {}
-        self._found: Dict[str, int] = {}
+        self._ended: Dict[str, int] = {}
+        self._nodes: Dict[str, FoundNode] = {}
         self._wanted: FrozenSet[str] = frozenset()
         self._synchronised: FrozenSet[str] = frozenset()
         self._submitted = 0
         self._reported: FrozenSet[str] = frozenset()
-        self._search: Optional[threading.Thread] = None
-        self._searched: FrozenSet[str] = frozenset()
-        self._changes = self._seen_changes = 0
+        self._sentences: Dict[str, str] = {}
+        self._sentences_topic = rospy.Publisher(PACE_TOPIC, String, queue_size=1, latch=True)
+        self._seen_changes = 0
+        self._awaited_search, self._unconnected_since = 0, 0.0
+        self._unconnectable: Set[str] = set()
         self._settled_at = 0.0
 
     @property
     def names(self) -> FrozenSet[str]:
-        """Nodes that are waited for, without slash."""
+        """Nodes that do not hold the simulation at real time, without slash."""
         waited_for = self._wanted.intersection(self._threads).difference(self._barrier.given_up)
-        return frozenset(name[1:] for name in waited_for)
+        kinds = {name: self._nodes[name].rule.kind for name in self._wanted.intersection(self._nodes)}
+        return frozenset(
+            name[1:]
+            for name, kind in kinds.items()
+            if kind == "observe" or kind == "rest" and name in waited_for
+        )
+
+    @property
+    def limiting(self) -> FrozenSet[str]:
+        """Nodes beside which time passes in real time at most, without slash."""
+        if not self.are_any:
+            return frozenset()
+        slow = {
+            name
+            for name, node in self._nodes.items()
+            if node.rule.kind == "real_time" and node.is_known or name in self._barrier.given_up
+        }
+        slow.intersection_update(self._awaited())
+        return frozenset(name[1:] for name in slow.union(self._wanted.intersection(self._ended)))
 
     def set_nodes(self, names: FrozenSet[str], synchronised: FrozenSet[str]) -> None:
         """Set the names of the nodes to wait for, and of those for which the simulation waits elsewhere."""
-        self._wanted, self._synchronised = names, synchronised
-        if (names or self._paces_all) and self._search is None:
-            self._search = threading.Thread(target=self._find, daemon=True)
+        self._wanted, self._synchronised = names | (self._named - synchronised), synchronised
+        if self.are_any:
             self._search.start()
 
     @property
@@ -82,38 +109,60 @@ class PacedNodes:
         """Whether there may be nodes to wait for."""
         return bool(self._wanted) or self._paces_all
 
-    def have_rested(self, stamp: float, is_answered: bool, is_clock_sent: bool) -> bool:
+    def have_rested(
+        self, stamp: float, is_answered: bool, is_clock_sent: bool, before_tick: bool = False
+    ) -> bool:
         """Return whether the nodes have rested at this barrier.
 
         Args:
             stamp: Present simulated time [s].
             is_answered: Whether all synchronised nodes have answered; they send messages before.
             is_clock_sent: Whether this time has been published.
+            before_tick: Whether the synchronised nodes, which receive messages of the others, must rest, too.
         """
         if not self.are_any:
             return True
-        if not self._searched.issuperset({MASTER, *self._wanted}):
+        if not self._search.searched.issuperset({MASTER, *(self._wanted - self._named)}):
             return False
         self._take_found()
         submitted = self._calls.submitted
         has_news = submitted != self._submitted or has_unread()
         self._submitted = submitted
-        if self._changes != self._seen_changes:
-            self._seen_changes, self._settled_at = self._changes, stamp + SETTLING_SECONDS
+        if self._search.changes != self._seen_changes:
+            self._seen_changes, self._settled_at = self._search.changes, stamp + SETTLING_SECONDS
         is_settling = stamp < self._settled_at
-        chosen = self._threads.keys() & self._wanted
-        if is_settling:  # also the connections of the synchronised nodes
-            chosen = {*self._threads}
-        elif self._paces_all:
-            chosen = self._threads.keys() - self._synchronised
+        if is_settling and not is_clock_sent and not self._are_connected():
+            return False
+        chosen = self._chosen(is_settling or before_tick)
         nodes = {name: self._rest_of(name, self._threads[name]) for name in sorted(chosen, reverse=True)}
         nodes[SYNCHRONISED] = lambda: is_answered
         quiet = SETTLING_QUIET_SECONDS if is_settling else QUIET_SECONDS
         if not is_clock_sent:
             quiet = DATA_QUIET_SECONDS
-        is_passed = self._barrier.is_passed(time.monotonic(), nodes, self._wanted, has_news, quiet)
+        is_passed = self._barrier.is_passed(time.monotonic(), nodes, self._awaited(), has_news, quiet)
         self._report()
+        if is_passed:
+            self._awaited_search = 0
         return is_passed
+
+    def _are_connected(self) -> bool:
+        """Whether a search that has begun at this barrier found all connections made.
+
+        Subscribers connect in threads that rest in between, and may miss what is sent meanwhile.
+        """
+        wall = time.monotonic()
+        if not self._awaited_search:
+            self._awaited_search, self._unconnected_since = self._search.request(), wall
+        if self._search.finished < self._awaited_search:
+            return False
+        missing = [text for text in self._search.unconnected if text not in self._unconnectable]
+        if missing and wall - self._unconnected_since <= CONNECT_SECONDS:
+            self._awaited_search = self._search.request()
+            return False
+        for text in missing:
+            self._unconnectable.add(text)
+            self._remark(f"{text} was not made within {CONNECT_SECONDS:g} s")
+        return True
 
     def waiting_for(self) -> List[str]:
         """Return the nodes that simulated time is stopped for, without slash."""
@@ -125,50 +174,73 @@ class PacedNodes:
         self._barrier.reset()
         self._settled_at = SETTLING_SECONDS
 
+    def _chosen(self, with_synchronised: bool) -> Set[str]:
+        """Return the nodes that have to rest."""
+        kinds = {name: self._nodes[name].rule.kind for name in self._threads if name in self._nodes}
+        if with_synchronised:
+            return {name for name, kind in kinds.items() if kind != "observe"}
+        return {name for name, kind in kinds.items() if kind == "rest" and self._is_paced(name)}
+
+    def _is_paced(self, name: str) -> bool:
+        return name in self._wanted or self._paces_all and name not in self._synchronised
+
+    def _awaited(self) -> FrozenSet[str]:
+        """Return the nodes for which the simulation has full patience."""
+        parts = (name for name, node in self._nodes.items() if node.takes_part and self._is_paced(name))
+        return self._wanted.union(parts)
+
     def _rest_of(self, name: str, threads: ProcessThreads) -> Callable[[], bool]:
         def is_resting() -> bool:
             try:
                 return threads.are_resting()
             except ProcessLookupError:
-                self._threads.pop(name, None)
-                self._found.pop(name, None)
-                threads.close()
-                if name in self._wanted:
-                    rospy.logwarn("%s has ended: the simulation goes on in real time", name[1:])
+                self._drop(name)
                 return True
 
         return is_resting
 
+    def _drop(self, name: str) -> None:
+        """Wait no longer for a node that has ended."""
+        threads = self._threads.pop(name, None)
+        if threads is not None:
+            self._ended[name] = threads.pid
+            threads.close()
+            if name in self._wanted:
+                rospy.logwarn("%s has ended: the simulation goes on in real time", name[1:])
+
     def _report(self) -> None:
-        given_up = self._wanted.intersection(self._barrier.given_up)
+        given_up = self._awaited().intersection(self._barrier.given_up)
+        text = "%s has computed for %g s without a pause: the simulation goes on in real time"
         for name in sorted(given_up - self._reported):
-            rospy.logwarn(
-                "%s has computed for %g s without a pause: the simulation goes on in real time",
-                name[1:],
-                PATIENCE_SECONDS,
-            )
+            rospy.logwarn(text, name[1:], PATIENCE_SECONDS)
             self._remark(f"{name} did not rest for {PATIENCE_SECONDS:g} s")
+        for name in sorted(self._reported - given_up):
+            if name in self._threads:
+                rospy.loginfo("%s rests again: simulated time waits for it", name[1:])
         self._reported = given_up
 
     def _take_found(self) -> None:
-        for name, pid in list(self._found.items()):
-            if name not in self._threads:
+        self._nodes = self._search.nodes
+        for name in self._threads.keys() - self._nodes.keys():
+            self._drop(name)
+        for name, node in self._nodes.items():
+            threads, pid = self._threads.get(name), node.pid
+            is_new = threads is None or threads.pid != pid
+            if pid is not None and pid != self._ended.get(name) and is_new:
                 self._threads[name] = ProcessThreads(pid)
-                if name in self._wanted:
-                    rospy.loginfo("simulated time waits until %s (process %d) rests", name[1:], pid)
+                self._ended.pop(name, None)
+            if name != MASTER and self._is_paced(name) and node.is_known:
+                self._state_rule(name, node)
 
-    def _find(self) -> None:
-        check, before = ConnectionCheck(), None
-        while not rospy.is_shutdown():
-            registrations = check.registrations()
-            self._changes += registrations != before
-            before = registrations
-            names = {MASTER, *registrations, *self._wanted} - {rospy.get_name()}
-            for name in names - self._found.keys():
-                if name.startswith(self._bystanders):
-                    continue
-                pid = check.local_process(name)
-                if pid is not None:
-                    self._found[name] = pid
-            self._searched = frozenset({*names, *self._searched})
-            time.sleep(SEARCH_SECONDS)
+    def _state_rule(self, name: str, node: FoundNode) -> None:
+        """Log, publish and apply the rule of a node, once."""
+        sentence = node.rule.sentence(name[1:])
+        if self._sentences.get(name) == sentence:
+            return
+        self._sentences[name] = sentence
+        rospy.loginfo("%s", sentence)
+        self._sentences_topic.publish("\n".join(self._sentences[each] for each in sorted(self._sentences)))
+        if name in self._wanted:
+            self._remark(sentence)
+        if node.rule.kind == "stamps":
+            self._messages.follow(name[1:], node.rule.topic)

@@ -19,6 +19,7 @@ from sim_bridge.config import RunTimeSettings
 from sim_bridge.pacing import REAL_TIME, Pacer
 from sim_bridge.rest.barrier import LOOK_SECONDS
 from sim_bridge.ros.call_queue import CallQueue
+from sim_bridge.ros.timing.idle_time import IdleTime
 from sim_bridge.ros.timing.lock_step import LockStep
 from sim_bridge.ros.timing.paced_nodes import PacedNodes
 from sim_bridge.scene import Scene
@@ -43,6 +44,7 @@ class TimeControl:
         pacer: Limits the speed.
         lock_step: Synchronised nodes.
         paced: Nodes that are not synchronised, and waited for.
+        idle: Idle time of the synchronised nodes.
         calls: Queue of the thread that owns the scene.
         clock_steps: Number of steps between two messages of ``/clock``.
     """
@@ -53,15 +55,16 @@ class TimeControl:
         pacer: Pacer,
         lock_step: LockStep,
         paced: PacedNodes,
+        idle: IdleTime,
         calls: CallQueue,
         clock_steps: int,
     ):
         self.is_paused = False
         self._clock = rospy.Publisher("/clock", Clock, queue_size=10, latch=True, tcp_nodelay=True)
         self._clock_steps, self._steps = clock_steps, 0
-        self._is_clock_due = self._is_clock_sent = False
+        self._is_clock_due = self._is_clock_sent = self._is_clock_processed = False
         self._lock_step = lock_step
-        self._paced = paced
+        self._paced, self._idle = paced, idle
         self._scene = scene
         self._pacer = pacer
         self._calls = calls
@@ -100,6 +103,11 @@ class TimeControl:
             self._publish_clock()
         if self.is_paused and not self._requests:
             return self._wait(LONGEST_WAIT_SECONDS)
+        if not self._is_clock_processed and self._lock_step.is_tick_due(self._scene.stamp):
+            # What other nodes send at this time must not race with the tick of the nodes that receive it.
+            if not self._have_nodes_rested(before_tick=True):
+                return self._wait(LOOK_SECONDS)
+            self._is_clock_processed = True
         if not self._lock_step.may_step(self._scene.stamp):
             return self._wait(LONGEST_WAIT_SECONDS)
         if self._calls.has_pending:  # of what was just delivered
@@ -107,21 +115,35 @@ class TimeControl:
         if not self._have_nodes_rested():
             return self._wait(LOOK_SECONDS)
         self._pacer.synchronised_nodes = self._lock_step.member_names | self._paced.names
-        wall, stamp = time.monotonic(), self._scene.stamp + self._scene.step_seconds
+        self._pacer.limited_by = self._paced.limiting
+        longest = 0.0 if self.is_paused else self._pacer.longest_jump
+        skipped = self._idle.update(longest, not self._paced.are_any)
+        if skipped is None or self._calls.has_pending:
+            return self._wait(LONGEST_WAIT_SECONDS)
+        wall, stamp = time.monotonic(), self._scene.stamp + (skipped + 1) * self._scene.step_seconds
         delay = self._pacer.delay(stamp, wall, is_limited=not self.is_paused)
         if delay <= 0.0:
+            self._skip(skipped)
             return True
         for name in self._pacer.give_up(stamp, wall):
             rospy.logwarn("no progress of %s: the simulation goes on without it in real time", name)
         return self._wait(min(delay, LONGEST_WAIT_SECONDS))
 
-    def _have_nodes_rested(self) -> bool:
+    def _skip(self, count: int) -> None:
+        """Skip steps of an idle time."""
+        if count:
+            self._idle.skip(count)
+            self._steps += count
+
+    def _have_nodes_rested(self, before_tick: bool = False) -> bool:
         """Whether nodes have caught up that neither support lock-step nor report; not asked in real time."""
         if 0.0 < self.speed <= REAL_TIME:
             return True
         reporting = {f"/{name}" for name in self._pacer.reporting}
         self._paced.set_nodes(self._lock_step.unable - reporting, self._lock_step.members | reporting)
-        return self._paced.have_rested(self._scene.stamp, self._lock_step.is_answered, self._is_clock_sent)
+        return self._paced.have_rested(
+            self._scene.stamp, self._lock_step.is_answered, self._is_clock_sent, before_tick
+        )
 
     def _publish_clock(self) -> None:
         self._is_clock_due, self._is_clock_sent = False, True
@@ -148,7 +170,7 @@ class TimeControl:
         The time comes last, so that nodes which it wakes up find the data of this step.
         """
         self._steps += 1
-        self._is_clock_sent = False
+        self._is_clock_sent = self._is_clock_processed = False
         if self._steps % self._clock_steps == 0:
             self._is_clock_due = True
             if not self._paced.are_any:
@@ -183,14 +205,14 @@ class TimeControl:
     def _on_step(self, message) -> StepResponse:
         """Pause, and take steps as fast as the nodes that are waited for allow."""
         request = _StepRequest(message.steps, Future())
-        self._calls.call(lambda: self._add_request(request))
+        self._calls.call(lambda: self._add_request(request), acts=False)
         try:
             return StepResponse(time_of(request.done.result()))
         except CancelledError:
             raise rospy.ServiceException("the simulation is shutting down") from None
 
     def _on_reconfigure(self, values):
-        self._calls.submit(lambda: self.set_speed(values["speed"]))
+        self._calls.submit(lambda: self.set_speed(values["speed"]), acts=False)
         return values
 
     def _add_request(self, request: _StepRequest) -> None:
@@ -204,7 +226,7 @@ class TimeControl:
 
     def _on_progress(self, message):
         name, stamp = message.frame_id.lstrip("/"), message.stamp.to_sec()
-        self._calls.submit(lambda: self._pacer.report(name, stamp))
+        self._calls.submit(lambda: self._pacer.report(name, stamp), acts=False)
 
     def _is_followed(self, name):
         return lambda: name in self._lock_step.member_names or not self._pacer.is_missing(name)
