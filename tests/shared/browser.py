@@ -233,18 +233,14 @@ class Tab:
         raise AssertionError(f"'{option}' could not be chosen of '{label}', {offered}")
 
     def tick(self, label):
-        """Toggle the checkbox with this label; a click is lost if the box moves meanwhile."""
-        wait_until(f"a box {label}", lambda: self.is_ticked(label) is not None)
+        """Toggle the checkbox with this label.
+
+        The page clicks it itself: the mouse could hit another one if the page moves meanwhile.
+        """
+        wait_until(f"a box {label} to click", lambda: self._is_stable(_find(label, BOX)))
         before = self.is_ticked(label)
-        for _ in range(20):
-            wait_until(f"a box {label} to click", lambda: self._is_stable(_find(label, BOX)))
-            place = self._place_of(_find(label, BOX))
-            if place is not None:
-                self.click_at(*place)
-            with suppress(AssertionError):
-                wait_until("the change", lambda: self.is_ticked(label) != before, 1.0)
-                return
-        raise AssertionError(f"'{label}' could not be toggled")
+        self.evaluate(f"{_find(label, BOX)}.click()")
+        wait_until(f"'{label}' to be toggled", lambda: self.is_ticked(label) == (not before))
 
     def value_of(self, label):
         """Return the value of the field with this label."""
@@ -351,13 +347,15 @@ class Tab:
 FIND_TEXT = """(text) => [...document.querySelectorAll('button, label, span, p, div, a')].filter(
     (one) => one.innerText && one.innerText.trim() === text && one.getClientRects().length).pop() || null"""
 BOX, FIELD = "input[type=checkbox]", "input:not([type=hidden], [type=checkbox]), textarea"
-# The checkbox or field of the row that begins with a label.
+# The checkbox or field of the row that begins with a label; the row of a checkbox has no other text. While
+# the page lays out anew, the label may be missing, and the title of a window must not be taken for it.
 FIND_INPUT = """(label, kind) => {
     for (const one of document.querySelectorAll('label, p, div, span')) {
         const isInner = !one.querySelector(':scope > :not(wbr)');
         if (!isInner || one.textContent.trim() !== label || !one.getClientRects().length) continue;
         for (let row = one.parentElement, n = 0; row && n < 5; row = row.parentElement, n++) {
             const found = row.querySelector(kind);
+            if (found && found.type === 'checkbox' && row.textContent.trim() !== label) break;
             if (found) return found;
         }
     }
