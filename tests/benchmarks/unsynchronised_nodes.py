@@ -121,6 +121,7 @@ def _arguments(options: argparse.Namespace, seed: int) -> List[str]:
     arguments += [f"zones_file:={home / 'zones.yaml'}", f"seed:={seed}", f"speed:={options.speed}"]
     arguments += [f"pace:={options.pace}"] if options.pace else []
     arguments += ["ordered:=true"] if options.ordered else []
+    arguments += [f"clock_rate:={options.clock_rate}"] if options.clock_rate else []
     return [*arguments, f"amcl_pkg:={options.amcl}", f"move_base_pkg:={options.move_base}"]
 
 
@@ -212,6 +213,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--move-base", default="move_base", help="package of move_base (default: move_base)")
     parser.add_argument("--pace", default="", help="rules of nodes, as NODE:RULE (default: the known ones)")
     parser.add_argument("--ordered", action="store_true", help="preload libordered_wake.so into move_base")
+    parser.add_argument("--clock-rate", type=int, help="rate of /clock [Hz] (default: the launch file's)")
     parser.add_argument("--speed", default="0", help="0: as fast as the nodes keep up (default)")
     parser.add_argument(
         "--log", type=Path, default=Path("unsynchronised_nodes.log"), help="output of the nodes"

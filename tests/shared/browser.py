@@ -348,7 +348,7 @@ FIND_TEXT = """(text) => [...document.querySelectorAll('button, label, span, p, 
     (one) => one.innerText && one.innerText.trim() === text && one.getClientRects().length).pop() || null"""
 BOX, FIELD = "input[type=checkbox]", "input:not([type=hidden], [type=checkbox]), textarea"
 # The checkbox or field of the row that begins with a label; the row of a checkbox has no other text. While
-# the page lays out anew, the label may be missing, and the title of a window must not be taken for it.
+# the page changes its layout, the label may be missing; the title of a window must not be taken for it.
 FIND_INPUT = """(label, kind) => {
     for (const one of document.querySelectorAll('label, p, div, span')) {
         const isInner = !one.querySelector(':scope > :not(wbr)');

@@ -46,14 +46,21 @@ namespace
 {
 using Clock = std::chrono::steady_clock;
 
-// Time for which all others must rest: more than two of the looks at the clock that timers take.
-constexpr std::chrono::microseconds QUIET{2500};
+// Time after a change of the clock in which timers look at it twice.
+constexpr std::chrono::microseconds LOOKED{2500};
+// Time for which the others must rest: what a thread has woken is ready to run at once.
+constexpr std::chrono::microseconds QUIET{300};
+// Looks in succession at which all of them must rest.
+constexpr int LOOKS = 3;
 // Time after which a thread goes on in any case: others may never rest.
 constexpr std::chrono::seconds PATIENCE{2};
 
 std::mutex g_mutex;
 // Simulated times until which threads sleep or wait for their turn [ns], by number; the kernel counts up.
 std::map<int, int64_t> g_sleeping;
+// Simulated time at which threads were last due [ns], and since when.
+int64_t g_instant = -1;
+Clock::time_point g_instant_since;
 
 int64_t nanoseconds(int64_t sec, int64_t nsec)
 {
@@ -84,21 +91,21 @@ bool is_resting(int thread)
   return bracket == nullptr || std::strchr("SItTXZ", bracket[2]) != nullptr;
 }
 
-// Whether all threads rest that do not sleep in simulated time.
-bool do_others_rest()
+// Number of a thread that neither sleeps in simulated time nor rests; 0 if there is none.
+int find_busy()
 {
   DIR* folder = opendir("/proc/self/task");
-  bool all = true;
-  while (dirent* entry = folder != nullptr && all ? readdir(folder) : nullptr)
+  int busy = 0;
+  while (dirent* entry = folder != nullptr && busy == 0 ? readdir(folder) : nullptr)
   {
     const int thread = std::atoi(entry->d_name);
-    all = thread == 0 || g_sleeping.count(thread) != 0 || is_resting(thread);
+    busy = thread == 0 || g_sleeping.count(thread) != 0 || is_resting(thread) ? 0 : thread;
   }
   if (folder != nullptr)
   {
     closedir(folder);
   }
-  return all;
+  return busy;
 }
 
 bool is_first_due(int self)
@@ -119,14 +126,26 @@ void wait_for_turn(int self)
   std::unique_lock<std::mutex> lock(g_mutex);
   const Clock::time_point begin = Clock::now();
   Clock::time_point quiet_since = begin;
+  int busy_before = 0;
+  int rests = 0;
   for (;;)
   {
     const Clock::time_point now = Clock::now();
-    if (!is_first_due(self) || !do_others_rest())
+    if (simulated_time() != g_instant)
+    {
+      g_instant = simulated_time();
+      g_instant_since = now;
+    }
+    const bool is_first = is_first_due(self);
+    const int busy = is_first ? find_busy() : 0;
+    // A thread that is seen running once has looked at the clock only.
+    if (!is_first || (busy != 0 && busy == busy_before))
     {
       quiet_since = Clock::now();  // this thread may not have run for a while since the loop began
     }
-    if (now - quiet_since >= QUIET || now - begin >= PATIENCE)
+    busy_before = busy;
+    rests = is_first && busy == 0 ? rests + 1 : 0;
+    if ((now - g_instant_since >= LOOKED && now - quiet_since >= QUIET && rests >= LOOKS) || now - begin >= PATIENCE)
     {
       break;
     }

@@ -162,6 +162,23 @@ def test_a_thread_that_computes_does_not_rest(program):
     assert rests(ProcessThreads(program(SPIN).pid), False)
 
 
+def test_a_thread_that_hands_over_to_one_that_was_read_before_does_not_hide_it(tmp_path, monkeypatch):
+    for name in ("1", "2"):
+        (tmp_path / "7" / "task" / name).mkdir(parents=True)
+    running, read = {"2"}, []
+
+    def is_waiting(_, name):
+        read.append(name)
+        if len(read) == 1:
+            running.symmetric_difference_update({"1", "2"})  # after this thread was read
+            return True
+        return name not in running
+
+    monkeypatch.setattr(ProcessThreads, "_is_waiting", is_waiting)
+    monkeypatch.setattr("os.listdir", lambda _: ["1", "2"])
+    assert not ProcessThreads(7, tmp_path).are_resting()
+
+
 def test_an_ended_process_is_noticed(program):
     process = program(REST)
     threads = ProcessThreads(process.pid)

@@ -27,6 +27,8 @@ class ProcessThreads:
     def are_resting(self) -> bool:
         """Return whether all threads wait.
 
+        They are read in both orders: a thread may hand over to one that was read before, and then wait.
+
         Raises:
             ProcessLookupError: The process has ended.
         """
@@ -36,7 +38,7 @@ class ProcessThreads:
             raise ProcessLookupError(self.pid) from None
         for gone in self._files.keys() - set(names):
             os.close(self._files.pop(gone))
-        return all(self._is_waiting(name) for name in names)
+        return all(map(self._is_waiting, (*names, *reversed(names))))
 
     def close(self) -> None:
         """Close the files of the threads."""

@@ -110,13 +110,19 @@ class PacedNodes:
         return bool(self._wanted) or self._paces_all
 
     def have_rested(
-        self, stamp: float, is_answered: bool, is_clock_sent: bool, before_tick: bool = False
+        self,
+        stamp: float,
+        is_answered: bool,
+        is_clock_due: bool,
+        is_clock_sent: bool,
+        before_tick: bool = False,
     ) -> bool:
         """Return whether the nodes have rested at this barrier.
 
         Args:
             stamp: Present simulated time [s].
             is_answered: Whether all synchronised nodes have answered; they send messages before.
+            is_clock_due: Whether this time will be published after this barrier.
             is_clock_sent: Whether this time has been published.
             before_tick: Whether the synchronised nodes, which receive messages of the others, must rest, too.
         """
@@ -136,9 +142,9 @@ class PacedNodes:
         chosen = self._chosen(is_settling or before_tick)
         nodes = {name: self._rest_of(name, self._threads[name]) for name in sorted(chosen, reverse=True)}
         nodes[SYNCHRONISED] = lambda: is_answered
-        quiet = SETTLING_QUIET_SECONDS if is_settling else QUIET_SECONDS
-        if not is_clock_sent:
-            quiet = DATA_QUIET_SECONDS
+        quiet = QUIET_SECONDS if is_clock_sent else DATA_QUIET_SECONDS
+        if is_settling and not is_clock_due:
+            quiet = SETTLING_QUIET_SECONDS
         is_passed = self._barrier.is_passed(time.monotonic(), nodes, self._awaited(), has_news, quiet)
         self._report()
         if is_passed:

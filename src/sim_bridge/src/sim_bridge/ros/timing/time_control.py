@@ -142,7 +142,11 @@ class TimeControl:
         reporting = {f"/{name}" for name in self._pacer.reporting}
         self._paced.set_nodes(self._lock_step.unable - reporting, self._lock_step.members | reporting)
         return self._paced.have_rested(
-            self._scene.stamp, self._lock_step.is_answered, self._is_clock_sent, before_tick
+            self._scene.stamp,
+            self._lock_step.is_answered,
+            self._is_clock_due,
+            self._is_clock_sent,
+            before_tick,
         )
 
     def _publish_clock(self) -> None:
