@@ -63,6 +63,20 @@ def test_dwa_reports_the_samples_it_evaluated():
     assert np.allclose(total, 0.05 * distance_cost + controller.occdist_scale * cost)
 
 
+def test_each_plan_begins_at_the_robot(settings):
+    grid = two_rooms(0.9)
+    robot, navigator = Robot(grid, Pose2(1.0, 2.0)), Navigator(settings, grid)
+    navigator.set_goal(Pose2(5.0, 2.0))
+    starts, status = [], Status.WAITING
+    while not status.is_final:
+        pose, decision = robot.pose, robot.tick(navigator)
+        if decision.plan_xy is not None:
+            starts.append(math.dist(decision.plan_xy[0], (pose.x, pose.y)))
+        status = decision.status
+    assert len(starts) > 5
+    assert max(starts) < 0.1
+
+
 def test_the_robot_leaves_a_trap_whose_end_is_near_the_goal(settings):
     grid = room(6.0, 5.0)
     for block in ((4.0, 1.0, 4.1, 4.0), (2.0, 1.0, 4.1, 1.1), (2.0, 3.9, 4.1, 4.0)):

@@ -145,7 +145,9 @@ def _control(execution: GoalExecution, state: RobotState, components: NavigatorC
         raise GoalSucceeded
     if now >= execution.next_plan - TIME_TOLERANCE:
         _plan(execution, state, components, has_plan=True)
-    plan_xy = execution.path_xy if execution.planned_at == now else None
+    plan_xy = None
+    if execution.planned_at == now:  # a plan that was kept begins at the robot, too
+        plan_xy = controller.plan_left_xy if len(execution.path_xy) else execution.path_xy
     if execution.needs_planning_recovery(now, settings.planner_patience):
         execution.start_recovery(RecoveryTrigger.PLANNING)
         return Decision(execution.status, Twist2(), str(execution.error), plan_xy=plan_xy)
