@@ -52,7 +52,12 @@ class ProcessThreads:
             stat = os.pread(self._files[name], STAT_BYTES, 0)
         except OSError:
             return True  # the thread has ended
-        return stat[stat.rfind(b")") + 2] in WAITING_STATES
+        return _state_in(stat) in WAITING_STATES
+
+
+def _state_in(stat: bytes) -> int:
+    """Return the state in a stat file: it follows the name, which ends at the last bracket."""
+    return stat[stat.rfind(b")") + 2]
 
 
 def has_ended(pid: int, proc: Path = PROC) -> bool:
@@ -66,7 +71,7 @@ def has_ended(pid: int, proc: Path = PROC) -> bool:
         stat = (proc / str(pid) / "stat").read_bytes()
     except OSError:
         return True
-    return stat[stat.rfind(b")") + 2] in b"ZX"
+    return _state_in(stat) in b"ZX"
 
 
 def is_native(pid: int, proc: Path = PROC) -> bool:

@@ -32,7 +32,8 @@ from sim_bridge.ros.timing.connection_monitor import ConnectionMonitor
 # Latched: why the run may not be repeatable, one reason a line.
 REMARKS_TOPIC = "/simulation/remarks"
 # Beside nodes that are not synchronised, ticks come this much after the scans [simulated s]: a loop that a
-# goal starts in such a node then has no instant in common with those that a scan has started.
+# goal starts in such a node then has no instant in common with those that a scan has started, if the clock is
+# sent at each step.
 DELAY_BESIDE_OTHERS = 0.02
 # Time limit of an answer [wall s].
 ANSWER_SECONDS = 5.0
