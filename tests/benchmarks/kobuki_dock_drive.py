@@ -3,11 +3,12 @@
 
 python3 tests/benchmarks/kobuki_dock_drive.py WORKSPACE [--starts 500] [--seed 1] [--record FILE] [--unicycle]
 
-WORKSPACE is a catkin workspace in which kobuki_dock_drive is built (yujinrobot/kobuki_core). Its class
-DockDrive receives at 50 Hz what the simulated robot measures, as the node passes it on, and its velocity
-goes to the robot. With --unicycle, the robot moves exactly as commanded, without dynamics and noise, and
-stops at the front of the dock. Starts are uniform in area, 0.5 to 2.4 m before the dock and within 58
-degrees, with headings up to --heading from the direction to the dock; nothing stands in the way. A start
+WORKSPACE is a catkin workspace in which kobuki_dock_drive is built (yujinrobot/kobuki_core), with the
+headers of Sophus in WORKSPACE/prefix/include where they are not installed. Its class DockDrive receives at
+50 Hz what the simulated robot measures, as the node passes it on, and its velocity goes to the robot. With
+--unicycle, the robot moves exactly as commanded, without dynamics and noise, and stops at the front of the
+dock. Starts are uniform in area, 0.5 to 2.4 m before the dock and within 58 degrees, with headings up to
+--heading from the direction to the dock; nothing stands in the way. A start
 counts as docked if the algorithm is DONE and the robot charges.
 """
 
@@ -49,7 +50,8 @@ BATCH = 20
 def built_library(workspace: Path, folder: Path) -> ctypes.CDLL:
     """Compile the C interface against the algorithm of a workspace, and load it."""
     libraries = workspace / "devel/lib"
-    roots = [path / "include" for path in (workspace / "src").iterdir() if (path / "include").is_dir()]
+    packages = [manifest.parent for manifest in (workspace / "src").rglob("package.xml")]
+    roots = [path / "include" for path in packages if (path / "include").is_dir()]
     roots += [workspace / "devel/include", workspace / "prefix/include", Path("/usr/include/eigen3")]
     target = folder / "libdock_drive.so"
     source = Path(__file__).with_suffix(".cpp")
