@@ -183,6 +183,7 @@ class LaunchPlan:
         bags: Profile of the topics to record; None: no bags.
         respawned: Nodes that roslaunch restarts if they die.
         package: Package of the launch file.
+        tool: Tool of the cockpit that is open at first.
     """
 
     file: str
@@ -191,6 +192,7 @@ class LaunchPlan:
     bags: Optional[str] = None
     respawned: Tuple[str, ...] = ()
     package: str = "home_service"
+    tool: Optional[str] = None
 
     def with_respawn(self, *nodes: str) -> "LaunchPlan":
         """Return the plan with these nodes restarted if they die."""
@@ -212,11 +214,6 @@ class RunOptions(ViewOptions):
     def name(self) -> str:
         """Name of the command, which is that of its module."""
         return type(self).__module__.rpartition(".")[2]
-
-    @property
-    def tool(self) -> Optional[str]:
-        """Tool of the cockpit that is open at first."""
-        return None
 
     @property
     def time_limit(self) -> float:

@@ -11,16 +11,17 @@ from planar.files.reading import is_file, read_text
 from sim_bridge import RobotError, robot_named
 
 
-def recording_plan(bags: Sequence[Path], stays: bool = False) -> LaunchPlan:
+def recording_plan(bags: Sequence[Path], stays: bool = False, tool: str = "replay") -> LaunchPlan:
     """Plan the playback of bags in the world and with the robot of their run.
 
     Args:
         bags: Bags in the order of time.
         stays: Keep running at the end, so that one can seek back.
+        tool: Tool of the cockpit that is open at first.
     """
     names = os.pathsep.join(str(path.resolve()) for path in bags)
     arguments = {"bags": names, "stays": str(stays).lower(), **_world_and_robot(bags[0])}
-    return LaunchPlan("recording.launch", arguments, is_simulated=False)
+    return LaunchPlan("recording.launch", arguments, is_simulated=False, tool=tool)
 
 
 def _world_and_robot(bag: Path) -> Dict[str, str]:

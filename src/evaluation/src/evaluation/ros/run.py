@@ -175,9 +175,7 @@ class Run:
         self._supervisor.start(launch.package, launch.file, arguments, launch.respawned)
         if self._options.shows_cockpit:
             where = self._options.web_port or FREE_PORT
-            self._cockpit = CockpitProcess(
-                where, self.folder / "log" / "cockpit.log", tool=self._options.tool
-            )
+            self._cockpit = CockpitProcess(where, self.folder / "log" / "cockpit.log", tool=launch.tool)
             self.display.print(f"cockpit: {self._cockpit.url}")
         wait_for = self._supervisor.wait_for
         wait_for("the ROS master", is_master_online)

@@ -46,8 +46,9 @@ class Cockpit:
 
         check_tool(self.tool)
         recording = open_recording(self.recordings, needs_scans=False)
-        showing = RecordingView(web_port=self.web_port, tool=self.tool or "replay", output=self.output)
-        return run_until_interrupted(showing, recording_plan(recording.paths, stays=True), "Ctrl-C closes it")
+        showing = RecordingView(web_port=self.web_port, output=self.output)
+        plan = recording_plan(recording.paths, stays=True, tool=self.tool or "replay")
+        return run_until_interrupted(showing, plan, "Ctrl-C closes it")
 
     def _show_graph(self) -> int:
         import os
@@ -66,7 +67,5 @@ class Cockpit:
 @dataclass(frozen=True)
 class RecordingView(RunOptions):
     """A recording that is shown until Ctrl-C."""
-
-    tool: Optional[str] = option(None, "tool that is open at first")
 
     is_interactive = True

@@ -41,10 +41,6 @@ class Replay(RunOptions):
         None, "for slam: write STEM.pgm and STEM.yaml, not to the run folder", type=Path, metavar="STEM"
     )
 
-    @property
-    def tool(self) -> Optional[str]:
-        return "replay" if self.estimator == "recorded" else None
-
     def run(self) -> int:
         from home_service.ros.replaying import inputs_of, open_recording, replay
 

@@ -36,7 +36,7 @@ def launch_day(options: RunOptions, scenario: Scenario, task: ServiceDayTask, se
         places = load_places(arguments["zones_file"])
         requests = load_requests(arguments["requests_file"])
         referee, recorder = Referee(places, display.print), DayRecorder(MIDNIGHT, MIDNIGHT + scenario.seconds)
-        launch = LaunchPlan("service_day.launch", arguments, package="laboratory")
+        launch = LaunchPlan("service_day.launch", arguments, package="laboratory", tool="service")
         with Run(options, launch, referee, RunRecorder(places), display, (recorder,)) as run:
             failure = run.watch(lambda: referee.simulated_seconds >= scenario.seconds)
             if failure is not None:

@@ -1,6 +1,6 @@
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Dict, Optional
+from typing import Dict
 
 from evaluation.options import GraphOptions, MissionOptions
 from supervision.command_line import option
@@ -31,10 +31,6 @@ class Service(GraphOptions, MissionOptions):
     def is_interactive(self) -> bool:
         return True
 
-    @property
-    def tool(self) -> Optional[str]:
-        return "service"
-
     def run(self) -> int:
         from evaluation.ros.run_modes import run_until_interrupted
         from headless_mission.inputs import read_mission
@@ -47,6 +43,7 @@ class Service(GraphOptions, MissionOptions):
             state_folder=self.state.resolve(),
             http_port=self.http_port,
         ).with_respawn(*RESPAWNED)
+        launch = replace(launch, tool="service")
         hint = f"send requests with ./scripts/request.sh --state {self.state}; Ctrl-C ends"
         return run_until_interrupted(self, launch, hint, places, idle_text="waiting for requests")
 
