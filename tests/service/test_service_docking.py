@@ -39,6 +39,7 @@ class ServiceDockingTest(unittest.TestCase):
         shutil.rmtree(cls.folder, ignore_errors=True)
 
     def test_docks(self):
+        rospy.wait_for_service("/move_base/zones/dock", PATIENCE)  # its housing, to keep out of
         self.a_low_battery_is_charged_before_the_request()
         self.of_two_docks_one_is_taken()
         self.a_dock_behind_a_wall_is_stated()

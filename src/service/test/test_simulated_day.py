@@ -38,14 +38,14 @@ DOCK = Pose2(-2.9, 0.0)
 HOUR = 3600.0
 
 
-def plan():
+def plan(dock=DOCK):
     grid = true_map(ROOM)
-    return DayPlan(ROOM, robot_named("turtlebot_lidar"), grid, PLACES, DOCK)
+    return DayPlan(ROOM, robot_named("turtlebot_lidar"), grid, PLACES, dock)
 
 
-def day(requests, seed=1, settings=SimulationSettings()):
+def day(requests, seed=1, settings=SimulationSettings(), dock=DOCK):
     conditions = EpisodeConditions(simulation=settings)
-    return prepare_day(plan(), requests, conditions.navigation(NAVIGATION_CONFIG), conditions, seed)
+    return prepare_day(plan(dock), requests, conditions.navigation(NAVIGATION_CONFIG), conditions, seed)
 
 
 def request(hours, text, minutes=10.0):
@@ -76,3 +76,12 @@ def test_a_robot_that_cannot_charge_stands_with_an_empty_battery():
     record = day([request(0.01, "wait 1h at desk", 100.0)], settings=settings).run(MIDNIGHT + HOUR)
     assert record.empty_at is not None and record.lowest_charge == 0.0
     assert not record.kept
+
+
+def test_the_robot_drives_around_its_dock_that_the_scan_does_not_see():
+    requests = [
+        request(0.02 * number, f"go {name}") for number, name in enumerate(("kitchen", "desk") * 3, start=1)
+    ]
+    record = day(requests, dock=Pose2(1.8, 0.0, np.pi)).run(MIDNIGHT + 0.2 * HOUR)
+    assert len(record.kept) == 6
+    assert not record.contacts

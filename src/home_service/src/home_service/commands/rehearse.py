@@ -61,7 +61,7 @@ class Rehearse(MissionOptions):
         conditions = EpisodeConditions(
             self.planner,
             faults=() if faulty is None else load_faults(faulty),
-            zones=Zones() if limits is None else load_zones(limits),
+            zones=(Zones() if limits is None else load_zones(limits)).with_dock(self.dock_in_world()),
         )
         stage = (home.world, home.robot, home.grid, home.mission)
         for seed in range(self.seed, self.seed + self.runs):

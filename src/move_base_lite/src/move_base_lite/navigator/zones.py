@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, field
-from typing import List, Sequence, Tuple
+from typing import List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -11,6 +11,10 @@ from planar import Pose2
 from planar.config.yaml_table import Table, read_table
 
 KEEP_OUT, SPEED = "keep_out", "speed"
+# Name of the zone of a dock, and the housing of a Kobuki's in its frame, with a margin for the error of
+# localization except at the front: least and greatest x, half width [m].
+DOCK = "dock"
+DOCK_HOUSING = -0.12, 0.0, 0.16
 
 
 @dataclass(frozen=True)
@@ -56,6 +60,20 @@ class Zones:
     def __init__(self, zones: Sequence[NavigationZone] = ()):
         self.all = tuple(zones)
         self._enabled = {zone.name for zone in zones if zone.enabled}
+
+    def with_dock(self, dock: Optional[Pose2]) -> "Zones":
+        """Return these zones and the housing of a dock, which is too low for most lasers.
+
+        Args:
+            dock: Pose of the dock's front in the map; x points away from it. None: no dock. A zone of that
+                name replaces the housing.
+        """
+        if dock is None or any(zone.name == DOCK for zone in self.all):
+            return self
+        back, front, side = DOCK_HOUSING
+        outline = (back, -side), (front, -side), (front, side), (back, side)
+        corners = tuple((pose.x, pose.y) for pose in (dock @ Pose2(x, y) for x, y in outline))
+        return Zones([*self.all, NavigationZone(DOCK, KEEP_OUT, corners)])
 
     def is_enabled(self, name: str) -> bool:
         """Check whether a zone is on."""

@@ -19,7 +19,7 @@ from planar.config.yaml_table import read_table
 
 # Parameters that are read by other means.
 _ELSEWHERE = {
-    "recovery_behaviors", "latch_xy_goal_tolerance", "strict_params", "zones_file", "footprint",
+    "recovery_behaviors", "latch_xy_goal_tolerance", "strict_params", "zones_file", "dock", "footprint",
     "robot_radius", "footprint_padding", "obstacle_range", "raytrace_range", "actionlib_status_frequency",
     "status_list_timeout",
 }  # fmt: skip

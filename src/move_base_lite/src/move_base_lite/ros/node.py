@@ -29,6 +29,7 @@ from move_base_lite.ros.topics.potential import PotentialTopic
 from move_base_lite.ros.topics.zones import ZoneTopics
 from move_base_lite.warmup import warm_up
 from planar import Pose2, Twist2
+from planar.geometry.pose import pose_of_text
 from planar_ros.lockstep import LockstepClient
 from planar_ros.messages.conversion import frame_name
 from planar_ros.messages.transforms import Transforms
@@ -51,8 +52,7 @@ class MoveBaseNode:
         self._step = LockstepClient.of_node()
         parameters = {**_searched_parameters(), **parameters_below("~")}
         self._settings = _checked_settings(parameters)
-        zones_file = parameters.get("zones_file", "")
-        self._zones = load_zones(zones_file) if zones_file else Zones()
+        self._zones = _zones(parameters)
         load_numba_without_blas()
         warm_up(self._settings)
         release_compiler()
@@ -212,6 +212,12 @@ def _checked_settings(parameters) -> NavigatorSettings:
             rospy.logwarn(warning)
     report_without_effect([*found.without_effect], found.unknown, is_strict())
     return found.settings
+
+
+def _zones(parameters: Dict[str, Any]) -> Zones:
+    zones_file, dock = parameters.get("zones_file", ""), parameters.get("dock", "")
+    zones = load_zones(zones_file) if zones_file else Zones()
+    return zones.with_dock(pose_of_text(dock, rospy.resolve_name("~dock")) if dock else None)
 
 
 def _searched_parameters() -> Dict[str, Any]:

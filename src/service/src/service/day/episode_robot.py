@@ -7,6 +7,7 @@ from headless_mission.docking import DockingHooks
 from headless_mission.localization import LocalizationHooks
 from headless_mission.navigation import EpisodeMoveBaseClient, NavigationHooks
 from move_base_lite import NavigatorSettings
+from move_base_lite.navigator.zones import Zones
 from pick_objects import DriveToPlace, GoalDriver
 from planar import OccupancyGrid, Pose2
 from service.execution.robot import (
@@ -41,7 +42,7 @@ class EpisodeRobot(EpisodeHooks):
     def __init__(
         self, settings: NavigatorSettings, grid: OccupancyGrid, seed: int, start: Pose2, dock: Pose2
     ):
-        self.navigation = NavigationHooks(settings, grid)
+        self.navigation = NavigationHooks(settings, grid, zones=Zones().with_dock(dock))
         client, staging = EpisodeMoveBaseClient(self.navigation), EpisodeMoveBaseClient(self.navigation)
         self._client, self._driver, self._dock = client, GoalDriver(client), dock
         self._controller = DockController(navigation=staging, seed=seed)
