@@ -1,25 +1,31 @@
-// Preloaded into a node of roscpp: its threads that sleep in simulated time wake up one after another.
+// Preloaded into a node of roscpp: its threads that wake up at one instant of simulated time run one after another.
 //
-// Threads that are due at the same instant, such as the control loop and the map updates of move_base, look
-// at the clock once a millisecond, each for itself, so that their order is chance. With this library a thread
-// whose sleep is over waits until those have had their turn that are due as well and were created before it,
-// and until all others rest. What the clock wakes otherwise, as timers do, comes first. Meanwhile the thread
-// is ready to run, so that the simulator sees that the node does not rest.
+// Threads that are due at the same instant, such as the control loop and the map updates of move_base, look at the
+// clock once a millisecond, each for itself, so that their order is chance, and on a busy machine a look comes
+// late. With this library a change of the clock wakes all of them, so that the simulator sees at once that the node
+// does not rest. A thread whose sleep is over waits until those have had their turn that are due as well and were
+// created before it, and until all others rest. So does a thread that another one has woken, such as the planner of
+// move_base by a new goal. Meanwhile it is ready to run.
 //
 // Use: env LD_PRELOAD=libordered_wake.so NODE
 
 #include <dirent.h>
 #include <dlfcn.h>
 #include <fcntl.h>
+#include <linux/futex.h>
+#include <pthread.h>
 #include <sched.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <map>
 #include <mutex>
 
@@ -31,6 +37,7 @@ struct Time
   uint32_t sec;
   uint32_t nsec;
   static Time now();
+  static void setNow(const Time& now);
   static bool useSystemTime();
 };
 
@@ -46,8 +53,8 @@ namespace
 {
 using Clock = std::chrono::steady_clock;
 
-// Time after a change of the clock in which timers look at it twice.
-constexpr std::chrono::microseconds LOOKED{2500};
+// Longest wait between two looks at the clock [ns].
+constexpr int64_t LOOK = 1000000;
 // Time for which the others must rest: what a thread has woken is ready to run at once.
 constexpr std::chrono::microseconds QUIET{300};
 // Looks in succession at which all of them must rest.
@@ -58,13 +65,31 @@ constexpr std::chrono::seconds PATIENCE{2};
 std::mutex g_mutex;
 // Simulated times until which threads sleep or wait for their turn [ns], by number; the kernel counts up.
 std::map<int, int64_t> g_sleeping;
-// Simulated time at which threads were last due [ns], and since when.
-int64_t g_instant = -1;
-Clock::time_point g_instant_since;
+// Number of changes of the clock, for which threads wait.
+std::atomic<uint32_t> g_changes{0};
+
+// The next definition of a function that is replaced here.
+template <typename Function>
+Function original(const char* name)
+{
+  return reinterpret_cast<Function>(dlsym(RTLD_NEXT, name));
+}
 
 int64_t nanoseconds(int64_t sec, int64_t nsec)
 {
   return sec * 1000000000 + nsec;
+}
+
+bool is_shutting_down()
+{
+  static const auto is_shutting_down = reinterpret_cast<bool (*)()>(dlsym(RTLD_DEFAULT, "_ZN3ros14isShuttingDownEv"));
+  return is_shutting_down != nullptr && is_shutting_down();
+}
+
+// Whether the clock is that of a simulation; a node that shuts down may no longer rest.
+bool is_time_simulated()
+{
+  return g_changes != 0 && !ros::Time::useSystemTime() && !is_shutting_down();
 }
 
 int64_t simulated_time()
@@ -121,6 +146,15 @@ bool is_first_due(int self)
   return true;
 }
 
+// Note that this thread is due at a simulated time [ns], and return its number.
+int set_due(int64_t stamp)
+{
+  const int self = static_cast<int>(syscall(SYS_gettid));
+  std::lock_guard<std::mutex> lock(g_mutex);
+  g_sleeping[self] = stamp;
+  return self;
+}
+
 void wait_for_turn(int self)
 {
   std::unique_lock<std::mutex> lock(g_mutex);
@@ -131,11 +165,6 @@ void wait_for_turn(int self)
   for (;;)
   {
     const Clock::time_point now = Clock::now();
-    if (simulated_time() != g_instant)
-    {
-      g_instant = simulated_time();
-      g_instant_since = now;
-    }
     const bool is_first = is_first_due(self);
     const int busy = is_first ? find_busy() : 0;
     // A thread that is seen running once has looked at the clock only.
@@ -145,7 +174,7 @@ void wait_for_turn(int self)
     }
     busy_before = busy;
     rests = is_first && busy == 0 ? rests + 1 : 0;
-    if ((now - g_instant_since >= LOOKED && now - quiet_since >= QUIET && rests >= LOOKS) || now - begin >= PATIENCE)
+    if ((now - quiet_since >= QUIET && rests >= LOOKS) || now - begin >= PATIENCE || is_shutting_down())
     {
       break;
     }
@@ -155,22 +184,82 @@ void wait_for_turn(int self)
   }
   g_sleeping.erase(self);
 }
+
+// Wait for a change of the clock since the last call in this thread, as long as between two looks at most.
+void wait_for_change()
+{
+  thread_local uint32_t seen = 0;
+  const timespec limit{0, LOOK};
+  syscall(SYS_futex, &g_changes, FUTEX_WAIT_PRIVATE, seen, &limit, nullptr, 0);
+  seen = g_changes;
+}
+
+// Whether an instant of a clock is so near that a thread which waits for it looks at the simulated time in between.
+bool is_near(clockid_t clock, const timespec& instant)
+{
+  timespec now;
+  clock_gettime(clock, &now);
+  const int64_t left = nanoseconds(instant.tv_sec - now.tv_sec, instant.tv_nsec - now.tv_nsec);
+  return left > 0 && left <= LOOK;
+}
 }  // namespace
+
+void ros::Time::setNow(const Time& now)
+{
+  static const auto set_now = original<void (*)(const Time&)>("_ZN3ros4Time6setNowERKS0_");
+  set_now(now);
+  ++g_changes;
+  syscall(SYS_futex, &g_changes, FUTEX_WAKE_PRIVATE, INT32_MAX, nullptr, nullptr, 0);
+}
 
 bool ros::Duration::sleep() const
 {
-  using Sleep = bool (*)(const Duration*);
-  static const auto original = reinterpret_cast<Sleep>(dlsym(RTLD_NEXT, "_ZNK3ros8Duration5sleepEv"));
-  if (Time::useSystemTime())
+  static const auto sleep_for = original<bool (*)(const Duration*)>("_ZNK3ros8Duration5sleepEv");
+  if (!is_time_simulated())
   {
-    return original(this);
+    return sleep_for(this);
   }
-  const int self = static_cast<int>(syscall(SYS_gettid));
-  {
-    std::lock_guard<std::mutex> lock(g_mutex);
-    g_sleeping[self] = simulated_time() + nanoseconds(sec, nsec);
-  }
-  const bool result = original(this);
+  const int self = set_due(simulated_time() + nanoseconds(sec, nsec));
+  const bool result = sleep_for(this);
   wait_for_turn(self);
+  return result;
+}
+
+extern "C" int nanosleep(const timespec* request, timespec* remaining)
+{
+  static const auto sleep_for = original<int (*)(const timespec*, timespec*)>("nanosleep");
+  if (request->tv_sec != 0 || request->tv_nsec != LOOK || !is_time_simulated())
+  {
+    return sleep_for(request, remaining);
+  }
+  wait_for_change();
+  return 0;
+}
+
+// Timers of roscpp look at the clock in between by this. What is notified meanwhile is found by the next look.
+extern "C" int pthread_cond_timedwait(pthread_cond_t* condition, pthread_mutex_t* mutex, const timespec* instant)
+{
+  using Wait = int (*)(pthread_cond_t*, pthread_mutex_t*, const timespec*);
+  static const auto wait = original<Wait>("pthread_cond_timedwait");
+  if (!is_time_simulated() || !(is_near(CLOCK_MONOTONIC, *instant) || is_near(CLOCK_REALTIME, *instant)))
+  {
+    return wait(condition, mutex, instant);
+  }
+  pthread_mutex_unlock(mutex);
+  wait_for_change();
+  pthread_mutex_lock(mutex);
+  return ETIMEDOUT;
+}
+
+extern "C" int pthread_cond_wait(pthread_cond_t* condition, pthread_mutex_t* mutex)
+{
+  static const auto wait = original<int (*)(pthread_cond_t*, pthread_mutex_t*)>("pthread_cond_wait");
+  const int result = wait(condition, mutex);
+  if (is_time_simulated())
+  {
+    pthread_mutex_unlock(mutex);
+    wait_for_turn(set_due(simulated_time()));
+    pthread_mutex_lock(mutex);
+  }
   return result;
 }

@@ -14,47 +14,110 @@ TIME = """
 #include <chrono>
 #include <random>
 #include <thread>
-std::atomic<bool> is_due{false};
 namespace ros
 {
-struct Time { unsigned sec, nsec; static Time now(); static bool useSystemTime(); };
+struct Time
+{
+  unsigned sec, nsec;
+  static Time now();
+  static void setNow(const Time&);
+  static bool useSystemTime();
+};
 struct Duration { int sec, nsec; bool sleep() const; };
-Time Time::now() { return {is_due ? 10u : 0u, 0}; }
+std::atomic<unsigned> g_now{0};
+Time Time::now() { return {g_now, 0}; }
+void Time::setNow(const Time& now) { g_now = now.sec; }
 bool Time::useSystemTime() { return false; }
 bool Duration::sleep() const
 {
   thread_local std::mt19937 chance{std::random_device{}()};
+  const unsigned end = g_now + sec;
   std::this_thread::sleep_for(std::chrono::microseconds(chance() % 1000));
-  while (!is_due) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  while (g_now < end) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   return true;
 }
 }
 """
 NODE = """
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <dirent.h>
+#include <fstream>
+#include <iterator>
+#include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
-extern std::atomic<bool> is_due;
-namespace ros { struct Duration { int sec, nsec; bool sleep() const; }; }
-int main()
+namespace ros
 {
-  std::atomic<int> running{0};
-  std::vector<int> order;
+struct Time
+{
+  unsigned sec, nsec;
+  static Time now();
+  static void setNow(const Time&);
+  static bool useSystemTime();
+};
+struct Duration { int sec, nsec; bool sleep() const; };
+}
+std::atomic<int> running{0};
+std::vector<int> order;
+void compute(int number)
+{
+  if (++running > 1) std::puts("two at once");
+  order.push_back(number);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(5);
+  while (std::chrono::steady_clock::now() < end) {}
+  --running;
+}
+int count_ready()
+{
+  int count = 0;
+  DIR* folder = opendir("/proc/self/task");
+  while (dirent* entry = readdir(folder))
+  {
+    if (entry->d_name[0] == '.') continue;
+    std::ifstream file("/proc/self/task/" + std::string(entry->d_name) + "/stat");
+    const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    count += text.size() > 2 && text[text.rfind(')') + 2] == 'R';
+  }
+  closedir(folder);
+  return count;
+}
+void sleep_together()
+{
   std::vector<std::thread> threads;
   for (int number = 0; number < 4; ++number)
-    threads.emplace_back([number, &running, &order] {
-      ros::Duration{5, 0}.sleep();
-      if (++running > 1) std::puts("two at once");
-      order.push_back(number);
-      const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(5);
-      while (std::chrono::steady_clock::now() < end) {}
-      --running;
-    });
+    threads.emplace_back([number] { ros::Duration{5, 0}.sleep(); compute(number); });
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  is_due = true;
+  ros::Time::setNow({10, 0});
+  std::printf("%d ready, ", count_ready() - 1);  // without this thread
   for (auto& thread : threads) thread.join();
+}
+void wake_another()
+{
+  std::mutex mutex;
+  std::condition_variable condition;
+  bool is_awake = false;
+  std::thread waiting([&] {
+    std::unique_lock<std::mutex> lock(mutex);
+    while (!is_awake) condition.wait(lock);
+    lock.unlock();
+    compute(1);
+  });
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  { std::lock_guard<std::mutex> lock(mutex); is_awake = true; condition.notify_one(); }
+  compute(0);
+  waiting.join();
+}
+int main(int, char** words)
+{
+  ros::Time::setNow({1, 0});
+  std::strcmp(words[1], "sleep") == 0 ? sleep_together() : wake_another();
   for (int number : order) std::printf("%d", number);
 }
 """
@@ -76,17 +139,22 @@ def node(tmp_path_factory):
     return folder
 
 
-def orders(folder, runs, **environment):
+def orders(folder, what, runs, **environment):
     environment = {**os.environ, **environment}
     return [
-        subprocess.run(["./node"], cwd=folder, env=environment, capture_output=True, text=True).stdout
+        subprocess.run(["./node", what], cwd=folder, env=environment, capture_output=True, text=True).stdout
         for _ in range(runs)
     ]
 
 
-def test_threads_take_turns_in_the_order_of_their_creation(node):
-    assert orders(node, 10, LD_PRELOAD=str(node / "libordered.so")) == ["0123"] * 10
+def test_threads_are_ready_at_once_and_take_turns_in_the_order_of_their_creation(node):
+    preload = str(node / "libordered.so")
+    assert orders(node, "sleep", 10, LD_PRELOAD=preload) == ["4 ready, 0123"] * 10
+
+
+def test_a_thread_that_another_one_wakes_waits_until_that_one_rests(node):
+    assert orders(node, "wake", 10, LD_PRELOAD=str(node / "libordered.so")) == ["01"] * 10
 
 
 def test_without_the_library_their_order_is_chance(node):
-    assert len(set(orders(node, 10))) > 1
+    assert len(set(orders(node, "sleep", 10))) > 1
