@@ -179,6 +179,15 @@ def test_a_thread_that_hands_over_to_one_that_was_read_before_does_not_hide_it(t
     assert not ProcessThreads(7, tmp_path).are_resting()
 
 
+def test_threads_that_wait_at_each_look_but_take_time_in_between_do_not_rest(tmp_path):
+    stat = tmp_path / "7" / "task" / "7" / "stat"
+    stat.parent.mkdir(parents=True)
+    stat.write_bytes(b"7 (node) S 1")
+    times = iter([(0.0, 0.0), (LOOK, 0.8 * LOOK), (2.0 * LOOK, 0.82 * LOOK)])
+    threads = ProcessThreads(7, tmp_path, lambda: next(times))
+    assert [threads.are_resting() for _ in range(3)] == [True, False, True]
+
+
 def test_an_ended_process_is_noticed(program):
     process = program(REST)
     threads = ProcessThreads(process.pid)

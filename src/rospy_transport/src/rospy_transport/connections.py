@@ -4,7 +4,7 @@ import fcntl
 import socket
 import termios
 from array import array
-from typing import Any, FrozenSet, Iterator, List, Set, Tuple
+from typing import Any, Container, FrozenSet, Iterator, List, Set, Tuple
 
 import rospy
 from rospy.impl.registration import get_topic_manager
@@ -68,8 +68,24 @@ def has_unread() -> bool:
     for subscription in list(get_topic_manager().subs.values()):
         for connection in list(subscription.connections):
             end = getattr(connection, "socket", None)
-            if end is not None and _unread_bytes(end):
+            if end is not None and _bytes_in(end, termios.FIONREAD):
                 return True
+    return False
+
+
+def has_undelivered(receivers: Container[str]) -> bool:
+    """Return whether bytes of this node's messages have not reached a receiver's kernel, or are not read yet.
+
+    Needed to distinguish a node that rests from one whose message is under way: on a busy machine the kernel takes
+    milliseconds for it.
+
+    Args:
+        receivers: Names of the nodes that matter.
+    """
+    for receiver, _, connection in outgoing():
+        end = getattr(connection, "socket", None)
+        if receiver in receivers and end is not None and _bytes_in(end, termios.TIOCOUTQ):
+            return True
     return False
 
 
@@ -126,11 +142,11 @@ def connect(publisher: rospy.Publisher, node: str, end: socket.socket) -> Any:
     return next(each for each in publisher.impl.connections if each.endpoint_id == node)
 
 
-def _unread_bytes(end: socket.socket) -> int:
-    """Number of received bytes that have not been read; 0 if the socket is closed."""
+def _bytes_in(end: socket.socket, queue: int) -> int:
+    """Number of bytes in a queue of a socket, by its ioctl(2) request; 0 if the socket is closed."""
     size = array("i", [0])
     try:
-        fcntl.ioctl(end.fileno(), termios.FIONREAD, size)
+        fcntl.ioctl(end.fileno(), queue, size)
     except (OSError, ValueError):
         return 0
     return size[0]

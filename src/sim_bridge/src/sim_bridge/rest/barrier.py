@@ -8,6 +8,8 @@ from typing import Callable, Container, Dict, Mapping, Optional
 QUIET_SECONDS = 0.002
 # The same after other messages: their receivers are ready to run when they have been sent.
 DATA_QUIET_SECONDS = 0.0003
+# The same before a message of the clock: what one node has sent to another may still be under way.
+BEFORE_CLOCK_QUIET_SECONDS = 0.001
 # The same while nodes start, which look for each other with longer pauses.
 SETTLING_QUIET_SECONDS = 0.03
 # Time between two looks [wall s].

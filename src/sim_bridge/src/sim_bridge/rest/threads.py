@@ -1,14 +1,18 @@
 """Whether the threads of a process rest: all wait, none is running or ready to run (proc(5))."""
 
 import os
+import time
 from pathlib import Path
-from typing import Dict
+from typing import Callable, Dict, Optional, Tuple
 
 # States of threads that wait, for an event or because they are stopped or have ended.
 WAITING_STATES = frozenset(b"SItTXZ")
 # Bytes of /proc/PID/task/TID/stat up to the state: two numbers and a name of at most 64 bytes.
 STAT_BYTES = 128
 PROC = Path("/proc")
+# Processor time that threads take which only look at the clock: share of the time between two looks at the
+# process, and time beyond that [s].
+IDLE_SHARE, IDLE_SECONDS = 0.25, 5e-5
 
 
 class ProcessThreads:
@@ -17,17 +21,23 @@ class ProcessThreads:
     Args:
         pid: Process.
         proc: Folder of the kernel's process information.
+        times: Returns wall time and the processor time of the process [s].
     """
 
-    def __init__(self, pid: int, proc: Path = PROC):
+    def __init__(
+        self, pid: int, proc: Path = PROC, times: Optional[Callable[[], Tuple[float, float]]] = None
+    ):
         self.pid = pid
         self._folder = proc / str(pid) / "task"
         self._files: Dict[str, int] = {}
+        self._times = times or self._measured_times
+        self._at_rest: Optional[Tuple[float, float]] = None
 
     def are_resting(self) -> bool:
-        """Return whether all threads wait.
+        """Return whether all threads wait, and have hardly run since the last call if they waited then, too.
 
-        They are read in both orders: a thread may hand over to one that was read before, and then wait.
+        They are read in both orders: a thread may hand over to one that was read before, and then wait. Two
+        that hand over to each other again and again may escape both, but not that they take time.
 
         Raises:
             ProcessLookupError: The process has ended.
@@ -38,12 +48,26 @@ class ProcessThreads:
             raise ProcessLookupError(self.pid) from None
         for gone in self._files.keys() - set(names):
             os.close(self._files.pop(gone))
-        return all(map(self._is_waiting, (*names, *reversed(names))))
+        if not all(map(self._is_waiting, (*names, *reversed(names)))):
+            self._at_rest = None
+            return False
+        before, self._at_rest = self._at_rest, self._times()
+        if before is None:
+            return True
+        wall, processor = (now - then for now, then in zip(self._at_rest, before))
+        return processor <= IDLE_SHARE * wall + IDLE_SECONDS
 
     def close(self) -> None:
         """Close the files of the threads."""
         while self._files:
             os.close(self._files.popitem()[1])
+
+    def _measured_times(self) -> Tuple[float, float]:
+        try:
+            processor = time.clock_gettime((~self.pid << 3) | 2)  # clock_getcpuclockid(3)
+        except OSError:
+            processor = 0.0  # it has ended
+        return time.monotonic(), processor
 
     def _is_waiting(self, name: str) -> bool:
         try:

@@ -6,8 +6,9 @@ from typing import Callable, Dict, FrozenSet, List, Mapping, Set
 import rospy
 from std_msgs.msg import String
 
-from rospy_transport.connections import has_unread
+from rospy_transport.connections import has_undelivered, has_unread
 from sim_bridge.rest.barrier import (
+    BEFORE_CLOCK_QUIET_SECONDS,
     DATA_QUIET_SECONDS,
     PATIENCE_SECONDS,
     QUIET_SECONDS,
@@ -25,6 +26,8 @@ from sim_bridge.ros.timing.stamped_messages import StampedMessages
 PACE_TOPIC = "/simulation/pace"
 # Name under which the synchronised nodes are waited for, in whose messages the others may have a part.
 SYNCHRONISED = "synchronised nodes"
+# The same for messages of the simulation that have not arrived yet.
+MESSAGES = "messages"
 # Time without a new topic or service after which nodes have started [simulated s].
 SETTLING_SECONDS = 2.0
 
@@ -142,9 +145,8 @@ class PacedNodes:
         chosen = self._chosen(is_settling or before_tick)
         nodes = {name: self._rest_of(name, self._threads[name]) for name in sorted(chosen, reverse=True)}
         nodes[SYNCHRONISED] = lambda: is_answered
-        quiet = QUIET_SECONDS if is_clock_sent else DATA_QUIET_SECONDS
-        if is_settling and not is_clock_due:
-            quiet = SETTLING_QUIET_SECONDS
+        nodes[MESSAGES] = lambda: not has_undelivered(chosen)
+        quiet = _quiet(is_settling, is_clock_due, is_clock_sent)
         is_passed = self._barrier.is_passed(time.monotonic(), nodes, self._awaited(), has_news, quiet)
         self._report()
         if is_passed:
@@ -250,3 +252,12 @@ class PacedNodes:
             self._remark(sentence)
         if node.rule.kind == "stamps":
             self._messages.follow(name[1:], node.rule.topic)
+
+
+def _quiet(is_settling: bool, is_clock_due: bool, is_clock_sent: bool) -> float:
+    """Return the time for which all nodes must rest at a barrier [wall s]."""
+    if is_clock_due:
+        return BEFORE_CLOCK_QUIET_SECONDS
+    if is_settling:
+        return SETTLING_QUIET_SECONDS
+    return QUIET_SECONDS if is_clock_sent else DATA_QUIET_SECONDS

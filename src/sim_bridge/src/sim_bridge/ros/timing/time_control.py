@@ -171,11 +171,12 @@ class TimeControl:
     def on_step_finished(self) -> None:
         """Count a step whose data has been published, and answer the calls of ``~step`` that are finished.
 
-        The time comes last, so that nodes which it wakes up find the data of this step.
+        The time comes last, so that nodes which it wakes up find the data of this step. That of the first
+        step is always sent: before it no timer of roscpp runs, such as the one for static transforms.
         """
         self._steps += 1
         self._is_clock_sent = self._is_clock_processed = False
-        if self._steps % self._clock_steps == 0:
+        if self._steps == 1 or self._steps % self._clock_steps == 0:
             self._is_clock_due = True
             if not self._paced.are_any:
                 self._publish_clock()
