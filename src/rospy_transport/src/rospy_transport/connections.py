@@ -76,8 +76,8 @@ def has_unread() -> bool:
 def has_undelivered(receivers: Container[str]) -> bool:
     """Return whether bytes of this node's messages have not reached a receiver's kernel, or are not read yet.
 
-    Needed to distinguish a node that rests from one whose message is under way: on a busy machine the kernel takes
-    milliseconds for it.
+    Needed to distinguish a node that rests from one whose message is under way: on a busy machine the kernel
+    takes milliseconds for it.
 
     Args:
         receivers: Names of the nodes that matter.
