@@ -8,8 +8,8 @@ headers of Sophus in WORKSPACE/prefix/include where they are not installed. Its 
 50 Hz what the simulated robot measures, as the node passes it on, and its velocity goes to the robot. With
 --unicycle, the robot moves exactly as commanded, without dynamics and noise, and stops at the front of the
 dock. Starts are uniform in area, 0.5 to 2.4 m before the dock and within 58 degrees, with headings up to
---heading from the direction to the dock; nothing stands in the way. A start
-counts as docked if the algorithm is DONE and the robot charges.
+--heading from the direction to the dock; nothing stands in the way. A start counts as docked if the algorithm
+is DONE and the robot charges.
 """
 
 import argparse

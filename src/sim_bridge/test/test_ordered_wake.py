@@ -9,11 +9,7 @@ import pytest
 
 LIBRARY = Path(__file__).resolve().parents[1] / "preload" / "ordered_wake.cpp"
 # What of roscpp matters: all sleepers look at the time once a millisecond, each for itself.
-TIME = """
-#include <atomic>
-#include <chrono>
-#include <random>
-#include <thread>
+HEADER = """
 namespace ros
 {
 struct Time
@@ -24,6 +20,16 @@ struct Time
   static bool useSystemTime();
 };
 struct Duration { int sec, nsec; bool sleep() const; };
+}
+"""
+TIME = """
+#include "ros_time.h"
+#include <atomic>
+#include <chrono>
+#include <random>
+#include <thread>
+namespace ros
+{
 std::atomic<unsigned> g_now{0};
 Time Time::now() { return {g_now, 0}; }
 void Time::setNow(const Time& now) { g_now = now.sec; }
@@ -39,12 +45,11 @@ bool Duration::sleep() const
 }
 """
 NODE = """
-#include <algorithm>
+#include "ros_time.h"
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <dirent.h>
 #include <fstream>
@@ -53,17 +58,6 @@ NODE = """
 #include <string>
 #include <thread>
 #include <vector>
-namespace ros
-{
-struct Time
-{
-  unsigned sec, nsec;
-  static Time now();
-  static void setNow(const Time&);
-  static bool useSystemTime();
-};
-struct Duration { int sec, nsec; bool sleep() const; };
-}
 std::atomic<int> running{0};
 std::vector<int> order;
 void compute(int number)
@@ -128,6 +122,7 @@ def node(tmp_path_factory):
     folder = tmp_path_factory.mktemp("node")
     compiler = shutil.which("c++")
     assert compiler is not None, "a compiler, which catkin needs, too"
+    (folder / "ros_time.h").write_text(HEADER)
     (folder / "time.cpp").write_text(TIME)
     (folder / "node.cpp").write_text(NODE)
     shared = [compiler, "-std=c++11", "-O1", "-pthread", "-shared", "-fPIC"]
