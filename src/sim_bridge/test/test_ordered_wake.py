@@ -50,37 +50,25 @@ NODE = """
 #include <chrono>
 #include <condition_variable>
 #include <cstdio>
-#include <cstring>
-#include <dirent.h>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <mutex>
 #include <string>
+#include <sys/syscall.h>
 #include <thread>
+#include <unistd.h>
 #include <vector>
 std::atomic<int> running{0};
+std::mutex order_mutex;
 std::vector<int> order;
 void compute(int number)
 {
   if (++running > 1) std::puts("two at once");
-  order.push_back(number);
+  { std::lock_guard<std::mutex> lock(order_mutex); order.push_back(number); }
   const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(5);
   while (std::chrono::steady_clock::now() < end) {}
   --running;
-}
-int count_ready()
-{
-  int count = 0;
-  DIR* folder = opendir("/proc/self/task");
-  while (dirent* entry = readdir(folder))
-  {
-    if (entry->d_name[0] == '.') continue;
-    std::ifstream file("/proc/self/task/" + std::string(entry->d_name) + "/stat");
-    const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-    count += text.size() > 2 && text[text.rfind(')') + 2] == 'R';
-  }
-  closedir(folder);
-  return count;
 }
 void sleep_together()
 {
@@ -89,8 +77,21 @@ void sleep_together()
     threads.emplace_back([number] { ros::Duration{5, 0}.sleep(); compute(number); });
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
   ros::Time::setNow({10, 0});
-  std::printf("%d ready, ", count_ready() - 1);  // without this thread
   for (auto& thread : threads) thread.join();
+}
+void sleep_alone()
+{
+  std::atomic<long> number{0};
+  std::thread sleeping([&] {
+    number = syscall(SYS_gettid);
+    ros::Duration{5, 0}.sleep();
+  });
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  std::ifstream file("/proc/self/task/" + std::to_string(number) + "/stat");
+  ros::Time::setNow({10, 0});
+  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  std::printf(text[text.rfind(')') + 2] == 'R' ? "ready" : "at rest");
+  sleeping.join();
 }
 void wake_another()
 {
@@ -111,7 +112,9 @@ void wake_another()
 int main(int, char** words)
 {
   ros::Time::setNow({1, 0});
-  std::strcmp(words[1], "sleep") == 0 ? sleep_together() : wake_another();
+  const std::map<std::string, void (*)()> cases{
+      {"together", sleep_together}, {"alone", sleep_alone}, {"wake", wake_another}};
+  cases.at(words[1])();
   for (int number : order) std::printf("%d", number);
 }
 """
@@ -134,7 +137,7 @@ def node(tmp_path_factory):
     return folder
 
 
-def orders(folder, what, runs, **environment):
+def outputs(folder, what, runs, **environment):
     environment = {**os.environ, **environment}
     return [
         subprocess.run(["./node", what], cwd=folder, env=environment, capture_output=True, text=True).stdout
@@ -142,14 +145,17 @@ def orders(folder, what, runs, **environment):
     ]
 
 
-def test_threads_are_ready_at_once_and_take_turns_in_the_order_of_their_creation(node):
-    preload = str(node / "libordered.so")
-    assert orders(node, "sleep", 10, LD_PRELOAD=preload) == ["4 ready, 0123"] * 10
+def test_threads_take_turns_in_the_order_of_their_creation(node):
+    assert outputs(node, "together", 10, LD_PRELOAD=str(node / "libordered.so")) == ["0123"] * 10
+
+
+def test_the_clock_wakes_a_thread_at_once(node):
+    assert outputs(node, "alone", 10, LD_PRELOAD=str(node / "libordered.so")) == ["ready"] * 10
 
 
 def test_a_thread_that_another_one_wakes_waits_until_that_one_rests(node):
-    assert orders(node, "wake", 10, LD_PRELOAD=str(node / "libordered.so")) == ["01"] * 10
+    assert outputs(node, "wake", 10, LD_PRELOAD=str(node / "libordered.so")) == ["01"] * 10
 
 
 def test_without_the_library_their_order_is_chance(node):
-    assert len(set(orders(node, "sleep", 10))) > 1
+    assert len(set(outputs(node, "together", 10))) > 1
