@@ -51,15 +51,6 @@ def test_a_publisher_with_a_queue_uses_the_installed_class(connect):
     assert connections.topic_names() == ({TOPIC}, frozenset())
 
 
-def test_a_message_is_delivered_when_its_receiver_has_read_it(connect):
-    publisher, far, _ = connect()
-    assert not connections.has_undelivered({NODE})
-    publisher.publish("now")
-    assert connections.has_undelivered({NODE}) and not connections.has_undelivered({"/another"})
-    far.recv(100)
-    assert not connections.has_undelivered({NODE})
-
-
 def test_a_publisher_without_a_queue_uses_a_plain_connection(connect):
     with pytest.warns(SyntaxWarning):
         publisher, far, connection = connect(queue_size=None)

@@ -11,6 +11,7 @@ from rospy.impl.registration import get_topic_manager
 from rospy.impl.tcpros_base import TCPROSTransport
 from rospy.impl.tcpros_pubsub import QueuedConnection, TCPROSPub
 
+from rospy_transport.arrival import has_arrived
 from rospy_transport.replacements import ImmediateConnection
 
 
@@ -74,17 +75,19 @@ def has_unread() -> bool:
 
 
 def has_undelivered(receivers: Container[str]) -> bool:
-    """Return whether bytes of this node's messages have not reached a receiver's kernel, or are not read yet.
+    """Return whether messages of this node are under way to a receiver.
 
-    Needed to distinguish a node that rests from one whose message is under way: on a busy machine the kernel
-    takes milliseconds for it.
+    Needed to distinguish a node that rests from one whose message has not arrived yet: on a busy machine the
+    kernel takes milliseconds for it.
 
     Args:
         receivers: Names of the nodes that matter.
     """
     for receiver, _, connection in outgoing():
         end = getattr(connection, "socket", None)
-        if receiver in receivers and end is not None and _bytes_in(end, termios.TIOCOUTQ):
+        if receiver not in receivers or end is None or not _bytes_in(end, termios.TIOCOUTQ):
+            continue
+        if not has_arrived(end):
             return True
     return False
 

@@ -5,6 +5,7 @@ rospy has no parameters or hooks for what they change.
 
 import socket
 import traceback
+from contextlib import suppress
 from io import BytesIO
 from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Type
 
@@ -26,7 +27,8 @@ class ImmediateConnection(QueuedConnection):
 
     rospy passes every message to a thread of each subscriber, which costs a node with many messages more than
     all its other work. A slow subscriber still blocks nothing: its thread sends what does not fit into the
-    socket's buffer.
+    socket's buffer. The kernel sends a message at once as well; otherwise it may wait up to 40 ms for the
+    acknowledgement of the one before.
 
     Attributes:
         receiver: Name of the receiving node.
@@ -40,6 +42,8 @@ class ImmediateConnection(QueuedConnection):
         self._is_relaying = False
         self._queue: List[bytes]
         self._error: Optional[Exception]
+        with suppress(OSError):  # not a TCP connection, or closed
+            connection.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         super().__init__(connection, queue_size)
 
     def write_data(self, data: bytes) -> bool:

@@ -12,9 +12,10 @@ DATA_QUIET_SECONDS = 0.0003
 BEFORE_CLOCK_QUIET_SECONDS = 0.001
 # The same while nodes start, which look for each other with longer pauses.
 SETTLING_QUIET_SECONDS = 0.03
-# Time between two looks [wall s].
+# Shortest time between two looks [wall s].
 LOOK_SECONDS = 0.0003
-# Looks at which all nodes must rest in succession: a node may hand over to one that was looked at before.
+# Looks at which all nodes must rest in succession, spread over the time for which they must: a node may hand
+# over to one that was looked at before.
 LOOKS = 2
 # Messages of a node that floods do not hold the simulation: of so many looks at one barrier they may.
 MOST_NEWS = 20
@@ -33,6 +34,7 @@ class _Barrier:
         busy: Node that did not rest at the latest look; None if all did.
         rests: Number of the latest looks at which all nodes rested.
         news: Number of looks before which messages had arrived.
+        next_look: When to look again [wall s].
     """
 
     begun: float
@@ -40,6 +42,7 @@ class _Barrier:
     busy: Optional[str] = None
     rests: int = 0
     news: int = 0
+    next_look: float = 0.0
 
 
 @dataclass
@@ -71,6 +74,11 @@ class RestBarrier:
         self._barrier: Optional[_Barrier] = None
         self.given_up: Dict[str, _Absence] = {}
 
+    @property
+    def is_begun(self) -> bool:
+        """Whether the simulation waits at a barrier."""
+        return self._barrier is not None
+
     def reset(self) -> None:
         """Leave the barrier, as simulated time restarts."""
         self._barrier = None
@@ -95,9 +103,12 @@ class RestBarrier:
         """
         barrier = self._barrier
         if barrier is None:
-            self._barrier = barrier = _Barrier(wall, wall)
-        elif has_news and barrier.news < MOST_NEWS:
+            self._barrier = _Barrier(wall, wall, next_look=wall + quiet / LOOKS)
+            return False
+        if has_news and barrier.news < MOST_NEWS:
             barrier.news, barrier.quiet_since = barrier.news + 1, wall
+        if wall < barrier.next_look:
+            return False
         self._recover(wall, nodes)
         before, barrier.busy = (
             barrier.busy,
@@ -109,10 +120,20 @@ class RestBarrier:
             if wall - barrier.begun > patience:
                 self.given_up[barrier.busy] = _Absence(wall)
         barrier.rests = barrier.rests + 1 if barrier.busy is None else 0
+        pause = min(quiet / LOOKS, barrier.quiet_since + quiet - wall)
+        barrier.next_look = wall + (max(LOOK_SECONDS, pause) if barrier.busy is None else LOOK_SECONDS)
         if barrier.rests < LOOKS or wall - barrier.quiet_since < quiet:
             return False
         self._barrier = None
         return True
+
+    def pause(self, wall: float) -> float:
+        """Return the time until the next look [s].
+
+        Args:
+            wall: Wall clock [s].
+        """
+        return max(0.0, self._barrier.next_look - wall) if self._barrier else LOOK_SECONDS
 
     def waiting_for(self) -> str:
         """Return a node that the simulation waits for; empty if there is none."""

@@ -32,12 +32,14 @@ class ProcessThreads:
         self._files: Dict[str, int] = {}
         self._times = times or self._measured_times
         self._at_rest: Optional[Tuple[float, float]] = None
+        self._is_backward = False
 
     def are_resting(self) -> bool:
         """Return whether all threads wait, and have hardly run since the last call if they waited then, too.
 
-        They are read in both orders: a thread may hand over to one that was read before, and then wait. Two
-        that hand over to each other again and again may escape both, but not that they take time.
+        Each call reads them in the order opposite to that of the last: a thread may hand over to one that was
+        read before, and then wait. Two that hand over to each other again and again may escape both, but not
+        that they take time.
 
         Raises:
             ProcessLookupError: The process has ended.
@@ -48,7 +50,8 @@ class ProcessThreads:
             raise ProcessLookupError(self.pid) from None
         for gone in self._files.keys() - set(names):
             os.close(self._files.pop(gone))
-        if not all(map(self._is_waiting, (*names, *reversed(names)))):
+        self._is_backward = not self._is_backward
+        if not all(map(self._is_waiting, reversed(names) if self._is_backward else names)):
             self._at_rest = None
             return False
         before, self._at_rest = self._at_rest, self._times()

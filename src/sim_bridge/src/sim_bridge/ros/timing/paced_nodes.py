@@ -1,12 +1,14 @@
 """Unsynchronised nodes, such as the official amcl and move_base, beside which time passes by rules."""
 
 import time
+from collections import Counter
 from typing import Callable, Dict, FrozenSet, List, Mapping, Set
 
 import rospy
 from std_msgs.msg import String
 
-from rospy_transport.connections import has_undelivered, has_unread
+from planar_ros.lockstep.transport import INSTANT_TOPIC
+from rospy_transport.connections import has_undelivered, has_unread, message_count, outgoing
 from sim_bridge.rest.barrier import (
     BEFORE_CLOCK_QUIET_SECONDS,
     DATA_QUIET_SECONDS,
@@ -28,6 +30,8 @@ PACE_TOPIC = "/simulation/pace"
 SYNCHRONISED = "synchronised nodes"
 # The same for messages of the simulation that have not arrived yet.
 MESSAGES = "messages"
+# The same for ticks of the synchronised nodes.
+TICKS = "ticks"
 # Time without a new topic or service after which nodes have started [simulated s].
 SETTLING_SECONDS = 2.0
 
@@ -75,7 +79,8 @@ class PacedNodes:
         self._seen_changes = 0
         self._awaited_search, self._unconnected_since = 0, 0.0
         self._unconnectable: Set[str] = set()
-        self._settled_at = 0.0
+        self._settled_at, self._is_graph_new = 0.0, False
+        self._sent_before: Dict[str, int] = {}
 
     @property
     def names(self) -> FrozenSet[str]:
@@ -139,18 +144,23 @@ class PacedNodes:
         self._submitted = submitted
         if self._search.changes != self._seen_changes:
             self._seen_changes, self._settled_at = self._search.changes, stamp + SETTLING_SECONDS
+            self._is_graph_new = True
         is_settling = stamp < self._settled_at
-        if is_settling and not is_clock_sent and not self._are_connected():
+        if is_settling and is_clock_due and not self._are_connected():
             return False
+        sent = _sent_counts()
+        must_look = self._barrier.is_begun or is_settling or has_news or before_tick
+        if not must_look and not self._are_woken(sent, is_clock_due or is_clock_sent):
+            return True
         chosen = self._chosen(is_settling or before_tick)
         nodes = {name: self._rest_of(name, self._threads[name]) for name in sorted(chosen, reverse=True)}
         nodes[SYNCHRONISED] = lambda: is_answered
         nodes[MESSAGES] = lambda: not has_undelivered(chosen)
-        quiet = _quiet(is_settling, is_clock_due, is_clock_sent)
+        quiet = _quiet(self._is_graph_new, is_clock_due, is_clock_sent)
         is_passed = self._barrier.is_passed(time.monotonic(), nodes, self._awaited(), has_news, quiet)
         self._report()
         if is_passed:
-            self._awaited_search = 0
+            self._awaited_search, self._is_graph_new, self._sent_before = 0, False, sent
         return is_passed
 
     def _are_connected(self) -> bool:
@@ -172,6 +182,11 @@ class PacedNodes:
             self._remark(f"{text} was not made within {CONNECT_SECONDS:g} s")
         return True
 
+    @property
+    def pause(self) -> float:
+        """Time until the nodes are looked at again [wall s]."""
+        return self._barrier.pause(time.monotonic())
+
     def waiting_for(self) -> List[str]:
         """Return the nodes that simulated time is stopped for, without slash."""
         name = self._barrier.waiting_for()
@@ -188,6 +203,18 @@ class PacedNodes:
         if with_synchronised:
             return {name for name, kind in kinds.items() if kind != "observe"}
         return {name for name, kind in kinds.items() if kind == "rest" and self._is_paced(name)}
+
+    def _are_woken(self, sent: Mapping[str, int], with_all: bool) -> bool:
+        """Return whether something has been sent since all nodes rested that may have woken one of them.
+
+        What a node does whose messages no other one receives matters when the clock is sent only.
+
+        Args:
+            sent: Numbers of messages sent.
+            with_all: Whether all nodes matter.
+        """
+        names = (name for name in self._chosen(False) if with_all or self._nodes[name].takes_part)
+        return any(sent.get(name, 0) != self._sent_before.get(name, 0) for name in (TICKS, *names))
 
     def _is_paced(self, name: str) -> bool:
         return name in self._wanted or self._paces_all and name not in self._synchronised
@@ -254,10 +281,18 @@ class PacedNodes:
             self._messages.follow(name[1:], node.rule.topic)
 
 
-def _quiet(is_settling: bool, is_clock_due: bool, is_clock_sent: bool) -> float:
+def _sent_counts() -> Dict[str, int]:
+    """Return the numbers of messages sent to each node, and of ticks."""
+    counts: Dict[str, int] = Counter()
+    for receiver, topic, connection in outgoing():
+        counts[TICKS if topic == INSTANT_TOPIC else receiver] += message_count(connection)
+    return counts
+
+
+def _quiet(is_graph_new: bool, is_clock_due: bool, is_clock_sent: bool) -> float:
     """Return the time for which all nodes must rest at a barrier [wall s]."""
+    if is_graph_new:
+        return SETTLING_QUIET_SECONDS
     if is_clock_due:
         return BEFORE_CLOCK_QUIET_SECONDS
-    if is_settling:
-        return SETTLING_QUIET_SECONDS
     return QUIET_SECONDS if is_clock_sent else DATA_QUIET_SECONDS

@@ -17,7 +17,6 @@ from planar_ros.node.parameters import SettingsReconfigureServer
 from planar_ros.node.readiness import ReadinessMonitor, StallReporter
 from sim_bridge.config import RunTimeSettings
 from sim_bridge.pacing import REAL_TIME, Pacer
-from sim_bridge.rest.barrier import LOOK_SECONDS
 from sim_bridge.ros.call_queue import CallQueue
 from sim_bridge.ros.timing.idle_time import IdleTime
 from sim_bridge.ros.timing.lock_step import LockStep
@@ -99,21 +98,21 @@ class TimeControl:
     def _may_step(self) -> bool:
         if self._is_clock_due:
             if not self._have_nodes_rested():
-                return self._wait(LOOK_SECONDS)
+                return self._wait(self._paced.pause)
             self._publish_clock()
         if self.is_paused and not self._requests:
             return self._wait(LONGEST_WAIT_SECONDS)
         if not self._is_clock_processed and self._lock_step.is_tick_due(self._scene.stamp):
             # What other nodes send at this time must not race with the tick of the nodes that receive it.
             if not self._have_nodes_rested(before_tick=True):
-                return self._wait(LOOK_SECONDS)
+                return self._wait(self._paced.pause)
             self._is_clock_processed = True
         if not self._lock_step.may_step(self._scene.stamp):
             return self._wait(LONGEST_WAIT_SECONDS)
         if self._calls.has_pending:  # of what was just delivered
             return self._wait(0.0)
         if not self._have_nodes_rested():
-            return self._wait(LOOK_SECONDS)
+            return self._wait(self._paced.pause)
         self._pacer.synchronised_nodes = self._lock_step.member_names | self._paced.names
         self._pacer.limited_by = self._paced.limiting
         longest = 0.0 if self.is_paused else self._pacer.longest_jump
