@@ -191,6 +191,7 @@ class CockpitToolsTest(unittest.TestCase):
 
     def test_a_bag_is_recorded_and_played(self):
         self.open("Bag")
+        self.page.wait_for("Stop the recording")  # before it, "Record" is the title of its folder only
         self.page.fill_in("File", "../there.bag")
         self.page.click("Record")
         self.page.wait_for("is not a valid file name")

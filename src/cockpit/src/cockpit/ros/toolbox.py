@@ -96,7 +96,7 @@ class Toolbox:
         context = ToolContext(self._page.gui, self._graph, self._page.notify, self._log, words)
         window = self._page.windows.open(kind.title)
         opened = _OpenTool(kind(context), context, window)
-        with context.lock, window:
+        with context.lock, self._page.atomic(), window:  # a click must not meet a part of it
             opened.tool.build()
         return opened
 
