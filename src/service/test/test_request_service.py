@@ -1,5 +1,6 @@
 """The service with a robot without physics."""
 
+from dataclasses import replace
 from datetime import timezone
 
 import pytest
@@ -10,7 +11,7 @@ from pick_objects import DriveToPlace, load_mission
 from planar import Pose2
 from planar.driving import GoalFailed, RobotDisplaced
 from service.config import EnergySettings, ServiceSettings
-from service.errors import QueueFullError, RequestError, TaskEndedError, UnknownTaskError
+from service.errors import JournalError, QueueFullError, RequestError, TaskEndedError, UnknownTaskError
 from service.execution.robot import DockRobot, UndockRobot
 from service.requests.mission_requests import documents_of
 from service.task import TaskStatus
@@ -179,6 +180,17 @@ def test_a_pause_goes_on_after_a_restart():
     again.now = bench.now + 50.0
     (ended,) = again.finish(task)
     assert 300.0 <= ended.finished_at - ended.started_at - 22.0 < 330.0
+
+
+@pytest.mark.parametrize("options", [{}, {"repeat": "0 9 * * *"}])
+def test_a_service_does_not_go_on_where_places_of_its_requests_are_missing(options):
+    bench = Bench(where=site(timezone.utc))
+    bench.send("deliver cup from kitchen to desk", **options)
+    bench.keep()
+    there = site(timezone.utc)
+    without = {name: place for name, place in there.places.items() if name != "desk"}
+    with pytest.raises(JournalError, match=r'open requests are for "desk".*known: kitchen, hall.*--mission'):
+        Bench(snapshot_of(bench), where=replace(there, places=without))
 
 
 def test_the_same_id_is_accepted_once():

@@ -9,6 +9,7 @@ from planar import Pose2
 from planar.elapsed_time import ElapsedTime
 from planar.maps.places import NamedPlace
 from service.config import ServiceSettings
+from service.errors import JournalError
 from service.execution.activities import DockingActivity
 from service.execution.executor import TaskExecutor
 from service.execution.robot import RobotEvent, RobotInputs, RobotOrder
@@ -20,6 +21,7 @@ from service.requests.admission import Accepted, Admission, FindEnded
 from service.requests.calendar_times import clock_text
 from service.requests.parser import Knowledge
 from service.requests.repetitions import Repetitions
+from service.requests.steps import Drive, SetDown
 from service.task import ServiceTask
 from service.task_book import Changes, RobotRecord, Snapshot, TaskBook
 
@@ -63,6 +65,9 @@ class RequestService:
         book: Open tasks, series, objects.
         executor: What the robot does.
         scheduler: The plan.
+
+    Raises:
+        JournalError: If places of open requests are not known here.
     """
 
     def __init__(
@@ -73,6 +78,7 @@ class RequestService:
         planner: Optional[Planner] = None,
         find_ended: FindEnded = lambda task_id: None,
     ):
+        _check_places(snapshot, site.places)
         self._site, self._settings = site, settings
         self.book = TaskBook(snapshot)
         self.executor = TaskExecutor(self.book, site.places, settings, site.area)
@@ -260,3 +266,16 @@ class RequestService:
             return
         self._recorded_at = now
         self.book.put_robot(RobotRecord(now, self._robot.pose, self._robot.is_docked))
+
+
+def _check_places(snapshot: Snapshot, known: Mapping[str, NamedPlace]) -> None:
+    """Refuse to go on where places of open requests are missing; they would be lost."""
+    requests = [each.request for each in (*snapshot.tasks, *snapshot.series)]
+    steps = [step for request in requests for step in request.description.steps()]
+    missing = {step.place for step in steps if isinstance(step, (Drive, SetDown))}.difference(known)
+    if missing:
+        names = ", ".join(f'"{name}"' for name in sorted(missing))
+        raise JournalError(
+            f"open requests are for {names}, not known here (known: {', '.join(known)}); start with the "
+            "same --mission or zones as before, or with another --state folder"
+        )
