@@ -270,7 +270,7 @@ class RequestService:
 
 def _check_places(snapshot: Snapshot, known: Mapping[str, NamedPlace]) -> None:
     """Refuse to go on where places of open requests are missing; they would be lost."""
-    requests = [each.request for each in (*snapshot.tasks, *snapshot.series)]
+    requests = [task.request for task in snapshot.tasks] + [series.request for series in snapshot.series]
     steps = [step for request in requests for step in request.description.steps()]
     missing = {step.place for step in steps if isinstance(step, (Drive, SetDown))}.difference(known)
     if missing:

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Run projects of other people twice, and once in another workspace; print verdicts, events and wall times.
 
-    python3 tests/benchmarks/projects.py CHECKOUT... [--beside WORKSPACE] [--busy 2] [--json FILE]
+    python3 tests/benchmarks/foreign_projects.py CHECKOUT... [--beside WORKSPACE] [--busy 2] [--json FILE]
 
 With ``--busy``, so many busy processes run beside the second run. Two runs have the same events if goals,
 markers and checks come in the same order; times may differ by as much as is printed. ``--beside`` names a
