@@ -85,9 +85,8 @@ def has_undelivered(receivers: Container[str]) -> bool:
     """
     for receiver, _, connection in outgoing():
         end = getattr(connection, "socket", None)
-        if receiver not in receivers or end is None or not _bytes_in(end, termios.TIOCOUTQ):
-            continue
-        if not has_arrived(end):
+        is_asked = receiver in receivers and end is not None
+        if is_asked and _bytes_in(end, termios.TIOCOUTQ) and not has_arrived(end):
             return True
     return False
 
