@@ -84,9 +84,8 @@ def has_undelivered(receivers: Container[str]) -> bool:
         receivers: Names of the nodes that matter.
     """
     for receiver, _, connection in outgoing():
-        end = getattr(connection, "socket", None)
-        is_asked = receiver in receivers and end is not None
-        if is_asked and _bytes_in(end, termios.TIOCOUTQ) and not has_arrived(end):
+        end = getattr(connection, "socket", None) if receiver in receivers else None
+        if end is not None and _bytes_in(end, termios.TIOCOUTQ) and not has_arrived(end):
             return True
     return False
 
