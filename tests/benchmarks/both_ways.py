@@ -42,7 +42,7 @@ class Comparison(NamedTuple):
     """A seed in both ways.
 
     ``poses``: compared; ``differs_at``: stamp of the first pose that differs [s]; ``deviation``: of the path
-    with exact values [m].
+    with exact values [m]; ``remarks``: why the run over ROS may not be repeatable.
     """
 
     over_ros: List[str]
@@ -50,6 +50,7 @@ class Comparison(NamedTuple):
     poses: int
     differs_at: Optional[float]
     deviation: float
+    remarks: List[str]
 
     @property
     def is_same(self) -> bool:
@@ -72,6 +73,7 @@ def compare(seed: int, mission: Optional[Path] = None) -> Comparison:
         len(pairs),
         differing[0] / 1e3 if differing else None,
         float(max(distances)),
+        run.findings["not_repeatable_because"],
     )
 
 
@@ -132,6 +134,8 @@ def main() -> int:
             f"{seed:4}  {'the same' if is_same else 'DIFFERENT'}   {poses:32}  {found.deviation:.3f}",
             flush=True,
         )
+        for remark in found.remarks:
+            print(f"  may not be repeatable: {remark}")
         if not is_same:
             print(f"  in one process: {found.in_one_process}\n  over ROS: {found.over_ros}")
     return 0 if all_same else 1

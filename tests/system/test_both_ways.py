@@ -20,6 +20,7 @@ LARGEST_DEVIATION = 0.1
 class BothWaysTest(unittest.TestCase):
     def test_an_errand_is_decided_and_driven_the_same(self):
         found = both_ways.compare(seed=7)
+        self.assertEqual(found.remarks, [])
         self.assertEqual(found.over_ros, found.in_one_process)
         self.assertEqual(found.over_ros[-1], "delivered")
         self.assertIsNone(found.differs_at)

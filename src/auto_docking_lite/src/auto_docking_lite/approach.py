@@ -52,19 +52,6 @@ class ApproachMonitor:
             return DockCode.FAILED_TO_CHARGE, "reached the dock, but it does not charge"
         return None
 
-    def is_path_free(self, inputs: DockInputs, base_in_dock: Pose2) -> bool:
-        """Return whether nothing but the dock, and what is behind it, is ahead.
-
-        Args:
-            inputs: What is known.
-            base_in_dock: Estimated pose of the robot in the dock's frame.
-        """
-        points = base_in_dock.transform_points(obstacles_in_base(inputs.scan))
-        points = points[points[:, 0] > ROBOT_FRONT / 2.0]
-        radius = self._settings.robot_radius - MARGIN
-        near, far = (Pose2(max(base_in_dock.x - factor * LOOKAHEAD, ROBOT_FRONT)) for factor in (1.0, 2.0))
-        return is_free(points, base_in_dock, near, radius) and is_free(points, near, far, radius)
-
     def is_stalled(self, inputs: DockInputs) -> bool:
         """Return whether the robot has not moved for some time although it was commanded to."""
         base = inputs.base_in_odom
@@ -75,3 +62,27 @@ class ApproachMonitor:
     def pause(self) -> None:
         """Begin to measure progress again, after the robot has waited."""
         self._moved_to = None
+
+
+def is_approach_free(
+    inputs: DockInputs,
+    dock_in_odom: Pose2,
+    base_in_odom: Pose2,
+    settings: DockingSettings,
+    margin: float = 0.0,
+) -> bool:
+    """Return whether nothing but the dock, and what is behind it, hinders the approach from a pose.
+
+    Args:
+        inputs: What is known.
+        dock_in_odom: Estimated pose of the dock.
+        base_in_odom: The pose of the robot.
+        settings: Radius of the robot.
+        margin: Distance by which obstacles may be nearer [m]: the poses are estimates.
+    """
+    odom_in_dock = dock_in_odom.inverse()
+    obstacles_xy = (odom_in_dock @ inputs.base_in_odom).transform_points(obstacles_in_base(inputs.scan))
+    obstacles_xy = obstacles_xy[obstacles_xy[:, 0] > ROBOT_FRONT / 2.0]
+    base, radius = odom_in_dock @ base_in_odom, settings.robot_radius - margin
+    near, far = (Pose2(max(base.x - factor * LOOKAHEAD, ROBOT_FRONT)) for factor in (1.0, 2.0))
+    return is_free(obstacles_xy, base, near, radius) and is_free(obstacles_xy, near, far, radius)

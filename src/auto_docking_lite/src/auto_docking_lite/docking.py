@@ -1,11 +1,11 @@
 """The task of docking: states, attempts, and the reasons for which it fails."""
 
 import math
-from typing import Callable, Dict, Optional, Sequence, Tuple
+from typing import Callable, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from auto_docking_lite.approach import ApproachMonitor
+from auto_docking_lite.approach import MARGIN, ApproachMonitor, is_approach_free
 from auto_docking_lite.attempts import STOP, RetriedTask
 from auto_docking_lite.backing import BackingOff
 from auto_docking_lite.config import DockingSettings
@@ -119,20 +119,16 @@ class Docking(RetriedTask):
     def _way(self, inputs: DockInputs) -> Tuple[Pose2, Optional[Sequence[Pose2]]]:
         """Return the staging pose of the present attempt in odom, and the positions on a free way to it.
 
-        If there is no way to it, another pose before the dock takes its place; the way is None if there is
-        none to any of them.
+        If there is no way to it, or none from it to the dock, another pose before the dock takes its place;
+        the way is None if there is none to any of them.
         """
         estimate = self._estimator.estimate()
         assert estimate is not None
         obstacles = inputs.base_in_odom.transform_points(obstacles_in_base(inputs.scan))
-        first = BEARINGS[self._attempt % len(BEARINGS)]
-        poses = [
-            staging_pose(estimate.dock_in_odom, self._settings, bearing, factor)
-            for factor in FACTORS
-            for bearing in (first, *FURTHER_BEARINGS)
-        ]
-        for pose in poses:
-            legs = free_legs(obstacles, inputs.base_in_odom, pose, self._settings.robot_radius)
+        dock, settings = estimate.dock_in_odom, self._settings
+        poses = _staging_poses(dock, settings, BEARINGS[self._attempt % len(BEARINGS)])
+        for pose in sorted(poses, key=lambda pose: not is_approach_free(inputs, dock, pose, settings)):
+            legs = free_legs(obstacles, inputs.base_in_odom, pose, settings.robot_radius)
             if legs is not None:
                 return pose, legs
         return poses[0], None
@@ -185,8 +181,10 @@ class Docking(RetriedTask):
         assert estimate is not None
         in_dock, (target, legs) = estimate.dock_in_odom.inverse() @ base, self._way(inputs)
         is_before = 0.6 * self._settings.staging_distance < in_dock.x < 1.5 * self._settings.staging_distance
-        is_first = self._attempt % len(BEARINGS) == 0
-        if base.distance_to(target) < STAGED or (is_first and is_before and abs(in_dock.y) < STAGED):
+        is_on_line = self._attempt % len(BEARINGS) == 0 and is_before and abs(in_dock.y) < STAGED
+        if base.distance_to(target) < STAGED or (
+            is_on_line and is_approach_free(inputs, estimate.dock_in_odom, base, self._settings)
+        ):
             return self._enter(DockState.ALIGNED, "turning to the dock")
         if legs is None and self._navigation is not None and inputs.odom_in_map:
             return self._enter(DockState.STAGING, "driving around an obstacle")
@@ -221,7 +219,7 @@ class Docking(RetriedTask):
         reason = self._monitor.error(inputs, front)
         if reason is not None:
             return self._retry(*reason)
-        if not self._monitor.is_path_free(inputs, in_dock):
+        if not is_approach_free(inputs, estimate.dock_in_odom, inputs.base_in_odom, self._settings, MARGIN):
             self._monitor.pause()
             return self._wait(inputs, DockCode.FAILED_TO_CONTROL, "something is before the dock")
         self._since.pop("blocked", None)
@@ -264,6 +262,12 @@ class Docking(RetriedTask):
     def _enter(self, state: DockState, text: str) -> Twist2:
         self._turned = self._side = 0.0
         return super()._enter(state, text)
+
+
+def _staging_poses(dock: Pose2, settings: DockingSettings, bearing: float) -> List[Pose2]:
+    """Return the staging pose at a bearing [rad], and those that may take its place, the best ones first."""
+    bearings = (bearing, *FURTHER_BEARINGS)
+    return [staging_pose(dock, settings, each, factor) for factor in FACTORS for each in bearings]
 
 
 def _is_known(estimate: DockEstimate, limits: Tuple[float, float]) -> bool:

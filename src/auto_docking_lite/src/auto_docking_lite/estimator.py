@@ -5,7 +5,7 @@ receiver's opening angle the dock is (Probabilistic Robotics, chapter 4.3).
 """
 
 import math
-from typing import List, NamedTuple, Optional, Sequence, Tuple
+from typing import NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -16,7 +16,12 @@ from planar.geometry.dock_field import CENTRE, FAR_CENTRE, LEFT, NEAR, RIGHT
 from planar.geometry.pose import cos_sin
 
 Signals = Tuple[int, int, int]
-PARTICLES, FIRST_PARTICLES = 400, 2000
+# Numbers of particles: with a position that is known better than within SPREAD [m], and before.
+PARTICLES, FIRST_PARTICLES, SPREAD = 400, 2000, 0.1
+# Width of the resampling kernel relative to the particles' spread, and its least deviations [m, m, rad].
+KERNEL, LEAST_KERNEL = 0.3, (0.002, 0.002, 0.004)
+# Share of effective particles below which they are resampled between two signals.
+LEAST_EFFECTIVE = 0.5
 # Motion of the robot between two signals that are used, unless they differ [m, rad].
 MIN_DISTANCE, MIN_ANGLE = 0.01, 0.035
 # Growth of the uncertainty: per metre [m, rad] and per radian [m, rad].
@@ -76,7 +81,7 @@ class DockEstimator:
             dock_in_odom: Its pose.
         """
         spread = self._settings.prior_deviation
-        noise = self._rng.normal(size=(PARTICLES, 3)) * (spread, spread, YAW_DEVIATION / 2.0)
+        noise = self._rng.normal(size=(FIRST_PARTICLES, 3)) * (spread, spread, YAW_DEVIATION / 2.0)
         self._particles = dock_in_odom.as_array() + noise
         self.has_signal = False
 
@@ -102,17 +107,33 @@ class DockEstimator:
         used = [each for each in received if self._is_news(*each)]
         if not used:
             return
-        bases = np.array([base.as_array() for base, _ in used])
-        signals = np.array([signal for _, signal in used], dtype=np.int64)
-        if signals.any() and self._particles is None:
-            self._particles = self._around(*used[int(signals.any(axis=1).argmax())])
-        self.has_signal = self.has_signal or bool(signals.any())
-        if self._particles is None or not self.has_signal:
-            return
-        logs = log_likelihoods(self._particles, bases, signals, self._field)
-        self._check(logs.max(), int((signals != 0).sum()), used)
-        if self._particles is not None and len(logs) == len(self._particles):
-            self._resample(logs)
+        number = next((i for i, (_, signals) in enumerate(used) if any(signals)), None)
+        if number is not None:
+            self.has_signal = True
+            if self._particles is None:
+                self._particles = self._around(*used[number])
+        if self._particles is not None and self.has_signal:
+            count = sum(bool(bits) for _, signals in used for bits in signals)
+            self._check(self._condition(used), count, used)
+
+    def _condition(self, used: Sequence[Tuple[Pose2, Signals]]) -> float:
+        """Condition the particles on signals and return the log-likelihood of the best ones.
+
+        Several signals at once would leave few of the particles, so that they are resampled in between.
+        """
+        assert self._particles is not None
+        best, logs = 0.0, np.zeros(len(self._particles))
+        for number, (base, signals) in enumerate(used):
+            bases, signal = base.as_array()[None], np.array(signals, dtype=np.int64)[None]
+            logs = logs + log_likelihoods(self._particles, bases, signal, self._field)
+            weights = np.exp(logs - logs.max())
+            weights /= weights.sum()
+            is_last, effective = number == len(used) - 1, 1.0 / (weights**2).sum()
+            if is_last or effective < LEAST_EFFECTIVE * len(weights):
+                best += float(logs.max())
+                self._resample(weights)
+                logs = np.zeros(len(self._particles))
+        return best
 
     def _is_news(self, base: Pose2, signals: Signals) -> bool:
         """Return whether a signal adds information; if so, let the particles drift by the motion."""
@@ -133,7 +154,7 @@ class DockEstimator:
         scale = np.array((position, position, yaw))
         self._particles = self._particles + self._rng.normal(size=self._particles.shape) * scale
 
-    def _check(self, best: float, count: int, used: List[Tuple[Pose2, Signals]]) -> None:
+    def _check(self, best: float, count: int, used: Sequence[Tuple[Pose2, Signals]]) -> None:
         """Count contradictions, and start afresh from the signals after too many in a row."""
         if count == 0:
             return
@@ -143,17 +164,23 @@ class DockEstimator:
             seen = [each for each in used if any(each[1])]
             self._particles = self._around(*seen[-1])
 
-    def _resample(self, logs: np.ndarray) -> None:
-        """Low-variance resampling (Probabilistic Robotics, table 4.4), with kernel noise, when it is due."""
+    def _resample(self, weights: np.ndarray) -> None:
+        """Low-variance resampling (Probabilistic Robotics, table 4.4); a kernel then keeps the covariance.
+
+        Source of the kernel: Liu and West, Combined parameter and state estimation in simulation-based
+        filtering, 2001; here by differences of particles, in which position and heading are correlated.
+        """
         assert self._particles is not None
-        weights = np.exp(logs - logs.max())
-        weights /= weights.sum()
-        positions = (np.arange(PARTICLES) + self._rng.random()) / PARTICLES
+        mean = weights @ self._particles
+        variance = weights @ (self._particles - mean) ** 2
+        count = PARTICLES if variance[0] + variance[1] < SPREAD**2 else FIRST_PARTICLES
+        positions = (np.arange(count) + self._rng.random()) / count
         chosen = np.minimum(np.searchsorted(np.cumsum(weights), positions), len(weights) - 1)
         particles = self._particles[chosen]
-        # Noise of the kernel: a share of the spread, so that copies differ (regularized particle filter).
-        spread = 0.1 * particles.std(axis=0) + (0.002, 0.002, 0.004)
-        self._particles = particles + self._rng.normal(size=particles.shape) * spread
+        differences = self._rng.permutation(particles) - self._rng.permutation(particles)
+        mean, kept = particles.mean(axis=0), math.sqrt(1.0 - KERNEL**2)
+        noise = self._rng.normal(size=particles.shape) * LEAST_KERNEL
+        self._particles = mean + kept * (particles - mean) + KERNEL * math.sqrt(0.5) * differences + noise
 
     def _around(self, base: Pose2, signals: Signals) -> np.ndarray:
         """Return poses (FIRST_PARTICLES, 3) of docks that explain the strongest signal received at a pose."""
