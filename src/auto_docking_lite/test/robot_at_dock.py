@@ -21,6 +21,9 @@ class RobotAtDock:
         field: Field of the dock; None for a dock without one.
         charges: Whether the contacts work.
         obstacles_xy: Obstacles (N, 2) in the dock's frame, which the scan shows.
+
+    Attributes:
+        odom_in_map: Pose of the odometry frame in the map.
     """
 
     def __init__(
@@ -33,7 +36,7 @@ class RobotAtDock:
     ):
         self.controller, self.base, self._start = controller, base_in_dock, base_in_dock
         self.field, self.charges, self.obstacles_xy = field, charges, obstacles_xy
-        self.now, self.states = 0.0, [""]
+        self.now, self.states, self.odom_in_map = 0.0, [""], Pose2()
 
     @property
     def dock_in_odom(self) -> Pose2:
@@ -54,7 +57,7 @@ class RobotAtDock:
             2 if is_bumped else 0,
             6 if contact else 0,
             self._scan(),
-            Pose2(),
+            self.odom_in_map,
         )
         decision = self.controller.tick(inputs)
         self._move(decision.command or Twist2())

@@ -130,6 +130,15 @@ def test_an_obstacle_is_passed():
     assert robot.run().is_success
 
 
+def test_a_known_dock_stays_at_its_place_in_the_map_while_the_odometry_drifts():
+    robot = docking(Pose2(5.0, 0.0), dock_in_map=Pose2(-5.0, 0.0))
+    robot.tick()
+    robot.odom_in_map = drift = Pose2(0.4, 0.9, 0.1)
+    robot.tick()
+    expected = drift.inverse() @ Pose2(-5.0, 0.0)
+    assert robot.controller.estimate().dock_in_odom.distance_to(expected) < 0.05
+
+
 @pytest.mark.parametrize("seed", range(8))
 def test_a_box_at_the_staging_pose_is_no_reason_to_fail(seed):
     box = np.array([[x, y] for x in (0.8, 0.85, 0.9, 0.95, 1.0) for y in (0.18, 0.23, 0.28)])

@@ -84,6 +84,9 @@ class Docking(RetriedTask):
 
     def tick(self, inputs: DockInputs) -> DockDecision:
         """Advance by one control period."""
+        expected = _expected(self._dock_in_map, inputs)
+        if expected is not None and not self._estimator.has_signal:
+            self._estimator.expect(expected)  # localization goes on, and the odometry drifts
         self._estimator.update(inputs.signals)
         self._turned += abs(wrap(inputs.base_in_odom.yaw - self._last_yaw))
         self._last_yaw = inputs.base_in_odom.yaw
@@ -108,7 +111,6 @@ class Docking(RetriedTask):
     def _begin(self, inputs: DockInputs) -> Optional[Twist2]:
         expected = _expected(self._dock_in_map, inputs)
         if expected is not None:
-            self._estimator.expect(expected)
             in_dock = expected.inverse() @ inputs.base_in_odom
             distance, bearing = math.hypot(in_dock.x, in_dock.y), abs(math.atan2(in_dock.y, in_dock.x))
             reach = self._settings.dock_far_range - self._settings.prior_deviation
