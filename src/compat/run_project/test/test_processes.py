@@ -4,7 +4,13 @@ from types import SimpleNamespace
 
 import pytest
 
-from run_project.ros.processes import BUSY_NICENESS, BusyProcesses
+from run_project.ros.processes import (
+    BUSY_NICENESS,
+    NODE_SECONDS,
+    PROGRAM_SECONDS,
+    BusyProcesses,
+    starting_seconds,
+)
 
 
 class FakeProcess:
@@ -37,3 +43,19 @@ def test_only_nodes_that_spin_without_sleeping_get_a_lower_priority(cpu_share, r
         process.seconds = float(second)
         busy.lower_priority([process], float(second))
     assert process.niceness == niceness
+
+
+@pytest.mark.parametrize(
+    ("command", "has_children", "is_of_project", "seconds"),
+    [
+        (["python3", "/opt/ros/bin/roslaunch", "robot", "world.launch"], False, False, NODE_SECONDS),
+        (["python3", "/opt/ros/bin/roslaunch", "robot", "world.launch"], True, False, 0.0),
+        (["/ws/devel/lib/robot/drive", "__name:=drive", "__log:=x"], False, True, NODE_SECONDS),
+        (["/opt/ros/lib/amcl/amcl", "__name:=amcl"], False, False, 0.0),
+        (["/ws/devel/lib/robot/pick_objects"], False, True, PROGRAM_SECONDS),
+        (["bash", "/opt/ros/bin/rosrun", "robot", "pick_objects"], True, False, 0.0),
+    ],
+)
+def test_a_program_counts_as_starting_until_it_is_a_node(command, has_children, is_of_project, seconds):
+    nodes = {"/amcl", "/home/move_base"}
+    assert starting_seconds(command, has_children, is_of_project, nodes) == seconds

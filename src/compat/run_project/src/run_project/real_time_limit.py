@@ -1,4 +1,4 @@
-"""Real time for as long as a project's scripts sleep between their windows."""
+"""Real time for as long as a project starts: its scripts sleep between windows, its nodes come up."""
 
 from typing import Callable
 
@@ -13,7 +13,8 @@ class RealTimeLimit:
     """Decides when simulated time may pass faster than real time.
 
     Authors separate windows by ``sleep``, in wall time: with a faster simulation, the later windows would
-    come late in simulated time, when the robot is already on its way.
+    come late in simulated time, when the robot is already on its way. So would a node that takes seconds to
+    start.
 
     Args:
         speed: Multiple of real time without the limit; 0 for no limit.
@@ -32,9 +33,9 @@ class RealTimeLimit:
         self._latest_sleep = self._latest_window = now
         self._apply(True)
 
-    def update(self, now: float, is_sleeping: bool, has_new_window: bool) -> None:
-        """Adapt the speed to what the scripts do at a wall time [s]."""
-        self._latest_sleep = now if is_sleeping else self._latest_sleep
+    def update(self, now: float, is_starting: bool, has_new_window: bool) -> None:
+        """Adapt the speed to whether scripts sleep or nodes start at a wall time [s]."""
+        self._latest_sleep = now if is_starting else self._latest_sleep
         self._latest_window = now if has_new_window else self._latest_window
         sleeps = now - self._latest_sleep < PAUSE_SECONDS
         self._apply(sleeps and now - self._latest_window < NO_MORE_WINDOWS_SECONDS)

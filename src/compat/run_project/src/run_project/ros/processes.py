@@ -2,7 +2,7 @@
 
 import contextlib
 from pathlib import Path
-from typing import Dict, List, Tuple
+from typing import Collection, Dict, List, Tuple
 
 import psutil
 
@@ -10,6 +10,9 @@ import psutil
 # often than this within a second of it: one that also waits for messages does so more often.
 BUSY_CPU_SHARE, BUSY_SECONDS, RESTS_PER_CPU_SECOND = 0.3, 5.0, 5.0
 BUSY_NICENESS = 15
+# Ages at which a launcher without processes, or a node that is not in the graph, and any other node, whose
+# name is not known, no longer count as starting [s].
+NODE_SECONDS, PROGRAM_SECONDS = 30.0, 3.0
 SHELLS = ("", "bash", "sh", "dash", "zsh")
 
 
@@ -59,3 +62,22 @@ def program_of(command: List[str]) -> str:
     if name in SHELLS:
         return ""
     return command[1] if name.startswith("python") and len(command) > 1 else "".join(command[:1])
+
+
+def starting_seconds(
+    command: List[str], has_children: bool, is_of_project: bool, nodes: Collection[str]
+) -> float:
+    """Return the age up to which a process counts as starting [s].
+
+    Args:
+        command: Its command line.
+        has_children: Whether it has started others.
+        is_of_project: Whether its program is one of the project.
+        nodes: Names of the nodes in the graph.
+    """
+    names = [word.partition(":=")[2] for word in command if word.startswith("__name:=")]
+    if names:  # of a node that roslaunch has started
+        return 0.0 if any(node.rpartition("/")[2] == names[-1] for node in nodes) else NODE_SECONDS
+    if any(Path(word).name == "roslaunch" for word in command[:2]):
+        return 0.0 if has_children else NODE_SECONDS
+    return PROGRAM_SECONDS if is_of_project else 0.0

@@ -14,7 +14,7 @@ import rospy
 
 from run_project.real_time_limit import RealTimeLimit
 from run_project.ros.observer import Observer
-from run_project.ros.processes import BusyProcesses, program_of, waits_for_input
+from run_project.ros.processes import BusyProcesses, program_of, starting_seconds, waits_for_input
 from run_project.ros.scripted_user import ScriptedUser
 from run_project.ros.simulator_speed import SimulatorSpeed
 from run_project.stand_ins.terminal import WindowLogs
@@ -157,7 +157,7 @@ class ProjectRun:
             windows = self._windows.opened()
             for window in windows:
                 self._log_event(f"{observer.simulated_time:7.1f} s  window {window}")
-            self._limit.update(now, _is_a_script_sleeping(), bool(windows))
+            self._limit.update(now, _is_a_script_sleeping() or self._are_nodes_starting(), bool(windows))
             self._display.show(observer.status())
             if observer.simulated_time != moved_time:
                 moved_wall, moved_time = now, observer.simulated_time
@@ -252,15 +252,29 @@ class ProjectRun:
                 raise LaunchError(f"no ROS master came up, see {self._logs / 'master.log'}")
             time.sleep(0.05)
 
+    def _are_nodes_starting(self) -> bool:
+        """Whether a program has been started that is not yet a node of the graph."""
+        for process in _project_descendants(self._helpers):
+            with contextlib.suppress(psutil.Error):
+                command, has_children = process.cmdline(), bool(process.children())
+                is_of_project = self._is_of_project(command)
+                limit = starting_seconds(command, has_children, is_of_project, self.observer.nodes)
+                if time.time() - process.create_time() < limit:
+                    return True
+        return False
+
     def _project_processes(self) -> List[psutil.Process]:
         """Processes of programs in the project's copy: neither shells nor ROS tools."""
         found = []
         for process in psutil.Process().children(recursive=True):
             with contextlib.suppress(psutil.NoSuchProcess):
-                program = program_of(process.cmdline())
-                if str(self._project_command.work) in program and not program.endswith(SETUP_TOOL):
+                if self._is_of_project(process.cmdline()):
                     found.append(process)
         return found
+
+    def _is_of_project(self, command: List[str]) -> bool:
+        program = program_of(command)
+        return str(self._project_command.work) in program and not program.endswith(SETUP_TOOL)
 
 
 def _is_a_script_sleeping() -> bool:
