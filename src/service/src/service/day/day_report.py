@@ -92,9 +92,10 @@ def _timeline(activities: Sequence[Tuple[float, str]], midnight: float, end: flo
             f'<rect x="{left:.3f}" y="0" width="{max(width, 0.08):.3f}" height="3" fill="{colour}">'
             f"<title>{tip}</title></rect>"
         )
-    hours = range(0, math.floor(end / HOUR) + 1, 3)
+    places = [(hour, 100.0 * hour * HOUR / end) for hour in range(0, math.floor(end / HOUR) + 1, 3)]
     labels = "".join(
-        f'<text x="{100.0 * hour * HOUR / end:.2f}" y="4.8" font-size="1.4">{hour}</text>' for hour in hours
+        f'<text x="{x:.2f}" y="4.3" font-size="0.9" text-anchor="{_anchor(x)}">{hour}</text>'
+        for hour, x in places
     )
     legend = " ".join(
         f'<span style="color:{colour}">&#9632;</span> {name}'
@@ -105,6 +106,11 @@ def _timeline(activities: Sequence[Tuple[float, str]], midnight: float, end: flo
         f'<svg viewBox="0 0 100 5" width="100%">{"".join(bars)}{labels}</svg>'
         f"<small>{legend}</small></figure>"
     )
+
+
+def _anchor(percent: float) -> str:
+    """Return the SVG anchor with which a short label at a place of a bar stays within it."""
+    return "start" if percent < 2.0 else "end" if percent > 98.0 else "middle"
 
 
 def _heat_map(track: np.ndarray, grid: OccupancyGrid) -> str:
