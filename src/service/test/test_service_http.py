@@ -1,6 +1,7 @@
 """The HTTP interface."""
 
 import json
+import socket
 import threading
 import time
 import urllib.error
@@ -149,3 +150,19 @@ def test_only_the_user_may_read_the_token(folder):
 def test_a_client_without_a_service_is_an_error(tmp_path):
     with pytest.raises(SettingsError, match="start ./scripts/service.sh"):
         ServiceClient(tmp_path)
+
+
+def test_a_service_that_ends_in_the_middle_of_an_answer_does_not_answer(tmp_path):
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        url = f"http://127.0.0.1:{server.getsockname()[1]}"
+        (tmp_path / "service.json").write_text(json.dumps({"url": url, "token": "token", "pid": 1}))
+
+        def answer_partly():
+            connection, _ = server.accept()
+            with connection:
+                connection.recv(65536)
+                connection.sendall(b"HTTP/1.1 201 Created\r\nContent-Length: 278\r\n\r\n{")
+
+        threading.Thread(target=answer_partly, daemon=True).start()
+        with pytest.raises(SettingsError, match="does not answer"):
+            ServiceClient(tmp_path).submit({"text": "go desk"})

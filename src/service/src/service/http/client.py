@@ -4,6 +4,8 @@ import json
 import time
 import urllib.error
 import urllib.request
+from contextlib import contextmanager
+from http.client import HTTPException
 from pathlib import Path
 from typing import Any, Dict, Iterator, List, Optional
 
@@ -72,7 +74,7 @@ class ServiceClient:
             RequestRefusedError: If the service refuses the call.
             SettingsError: If it does not answer.
         """
-        with self._open(method, path, document) as answer:
+        with self._reporting_errors(), self._open(method, path, document) as answer:
             return json.load(answer)
 
     def events(self, after: Optional[int] = None) -> Iterator[Dict[str, Any]]:
@@ -80,8 +82,13 @@ class ServiceClient:
 
         Args:
             after: Number of the last event that is known; None: only new ones.
+
+        Raises:
+            RequestRefusedError: If the service refuses the call.
+            SettingsError: If it does not answer, or ends.
         """
-        with self._open("GET", "/events" + ("" if after is None else f"?after={after}"), None) as answer:
+        path = "/events" + ("" if after is None else f"?after={after}")
+        with self._reporting_errors(), self._open("GET", path, None) as answer:
             for line in answer:
                 if line.startswith(b"data: "):
                     yield json.loads(line[6:])
@@ -91,11 +98,16 @@ class ServiceClient:
         self._read_address()
         headers = {"Authorization": f"Bearer {self._token}", "Content-Type": "application/json"}
         request = urllib.request.Request(self._url + path, body, headers, method=method)
+        return urllib.request.urlopen(request, timeout=ANSWER_SECONDS)
+
+    @contextmanager
+    def _reporting_errors(self) -> Iterator[None]:
+        """Turn errors of a call, also in the middle of an answer, into errors for users."""
         try:
-            return urllib.request.urlopen(request, timeout=ANSWER_SECONDS)
+            yield
         except urllib.error.HTTPError as error:
             raise RequestRefusedError(error.code, _problems(error)) from None
-        except (OSError, ValueError) as error:
+        except (OSError, ValueError, HTTPException) as error:
             reason = getattr(error, "reason", error)
             raise SettingsError(f"the service at {self._url} does not answer ({reason})") from None
 
