@@ -13,6 +13,7 @@ pytest.importorskip("fastapi")
 from service_bench import NOW, Bench  # noqa: E402
 
 from planar import SettingsError  # noqa: E402
+from service.commands.request import list_open  # noqa: E402
 from service.host import ServiceHost  # noqa: E402
 from service.http.client import RequestRefusedError, ServiceClient  # noqa: E402
 from service.http.server import HttpServer  # noqa: E402
@@ -80,6 +81,13 @@ def test_a_request_is_accepted_done_and_remembered(folder):
     assert client.call("GET", "/history")[0] == ended
     assert client.call("GET", "/state")["objects"] == {"cup": "desk"}
     assert client.call("GET", "/tasks") == []
+
+
+def test_the_list_reads_as_the_requests_were_written(folder, capsys):
+    client = ServiceClient(folder)
+    client.submit({"text": "patrol kitchen desk 2 times", "not_before": "+1h"})
+    list_open(client)
+    assert "patrol kitchen desk 2 times" in capsys.readouterr().out
 
 
 def test_requests_are_cancelled(folder):

@@ -38,7 +38,7 @@ class Request:
             return 0
         documents = self._documents()
         if not documents:
-            return _list(client)
+            return list_open(client)
         ids = [self._submit(client, document) for document in documents]
         return _follow(client, ids) if self.wait else 0
 
@@ -77,14 +77,17 @@ class Request:
         return str(name)
 
 
-def _list(client: Any) -> int:
+def list_open(client: Any) -> int:
+    """Print what the robot does and what is open; returns the exit code."""
+    from service.requests.request import description_from_json
+
     state = client.call("GET", "/state")
     charge = "" if state["charge"] is None else f", charge {100.0 * state['charge']:.0f} %"
     print(f"{state['activity']}{charge}, {state['open']} open")
     for task in client.call("GET", "/tasks"):
-        detail = " ".join(f"{name} {value}" for name, value in task["detail"].items())
+        text = description_from_json(task["category"], task["detail"]).text
         late = "  late" if task.get("in_time") is False else ""
-        print(f"{task['booking']['id']:>16}  {task['status']:<9} {task['category']} {detail}{late}")
+        print(f"{task['booking']['id']:>16}  {task['status']:<9} {text}{late}")
     return 0
 
 

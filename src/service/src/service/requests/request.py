@@ -194,12 +194,8 @@ def request_to_json(request: TaskRequest) -> Dict[str, Any]:
 
 def request_from_json(document: Mapping[str, Any]) -> TaskRequest:
     """Return a request that ``request_to_json`` wrote; for what people send, see ``parse_request``."""
-    attributes = {name: attribute for attribute, name in JSON_NAMES.items()}
-    values = {attributes.get(name, name): value for name, value in document["description"].items()}
-    if "places" in values:
-        values["places"] = tuple(values["places"])
     return TaskRequest(
-        DESCRIPTIONS[document["category"]](**values),
+        description_from_json(document["category"], document["description"]),
         document["priority"]["value"],
         from_millis(document.get("unix_millis_earliest_start_time")),
         from_millis(document.get("unix_millis_deadline")),
@@ -209,6 +205,16 @@ def request_from_json(document: Mapping[str, Any]) -> TaskRequest:
         tuple(document.get("labels", ())),
         tuple(document.get("after", ())),
     )
+
+
+def description_from_json(category: str, values: Mapping[str, Any]) -> Description:
+    """Return what to do, from its category and its JSON values."""
+    attributes = {name: attribute for attribute, name in JSON_NAMES.items()}
+    found = {attributes.get(name, name): value for name, value in values.items()}
+    if "places" in found:
+        found["places"] = tuple(found["places"])
+    description: Description = DESCRIPTIONS[category](**found)
+    return description
 
 
 def to_millis(seconds: Optional[float]) -> Optional[int]:
