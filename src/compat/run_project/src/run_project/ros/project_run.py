@@ -14,7 +14,13 @@ import rospy
 
 from run_project.real_time_limit import RealTimeLimit
 from run_project.ros.observer import Observer
-from run_project.ros.processes import BusyProcesses, program_of, starting_seconds, waits_for_input
+from run_project.ros.processes import (
+    NODE_SECONDS,
+    BusyProcesses,
+    program_of,
+    starting_seconds,
+    waits_for_input,
+)
 from run_project.ros.scripted_user import ScriptedUser
 from run_project.ros.simulator_speed import SimulatorSpeed
 from run_project.stand_ins.terminal import WindowLogs
@@ -256,10 +262,12 @@ class ProjectRun:
         """Whether a program has been started that is not yet a node of the graph."""
         for process in _project_descendants(self._helpers):
             with contextlib.suppress(psutil.Error):
+                age = time.time() - process.create_time()
+                if age > NODE_SECONDS:
+                    continue  # its children would be searched among all processes
                 command, has_children = process.cmdline(), bool(process.children())
                 is_of_project = self._is_of_project(command)
-                limit = starting_seconds(command, has_children, is_of_project, self.observer.nodes)
-                if time.time() - process.create_time() < limit:
+                if age < starting_seconds(command, has_children, is_of_project, self.observer.nodes):
                     return True
         return False
 
