@@ -145,10 +145,14 @@ class Tab:
         wait_until(f"{texts} on the page", are_there, seconds, READ_SECONDS)
 
     def click(self, text, seconds=20.0):
-        """Click the innermost element with this text or label."""
+        """Click the innermost element with this text or label.
+
+        The page clicks a button itself: the mouse could hit another one if the page moves meanwhile.
+        """
         element = f"({FIND_TEXT})({json.dumps(text)})"
-        wait_until(f"'{text}' to click", lambda: self._is_stable(element), seconds)
-        self.click_at(*self._place_of(element))
+        wait_until(
+            f"'{text}' to click", lambda: self._is_stable(element) and self._has_clicked(element), seconds
+        )
 
     def click_at(self, x, y):
         self.drag((x, y), (x, y))
@@ -289,6 +293,15 @@ class Tab:
         time.sleep(STILL_SECONDS)
         return place is not None and place == self._place_of(element)
 
+    def _has_clicked(self, element):
+        """Click an element unless it is covered; return whether it was clicked."""
+        if self.evaluate(f"({CLICK_BUTTON})(({UNCOVERED})({element}, {MIDDLE}) && {element})"):
+            return True
+        place = self._place_of(element)
+        if place is not None:
+            self.click_at(*place)
+        return place is not None
+
     def _place_of_input(self, label):
         return self.evaluate(f"({MIDDLE})({_find(label)})")
 
@@ -372,6 +385,12 @@ MIDDLE = """(one) => {
     one.scrollIntoView({block: 'nearest'});
     const box = one.getBoundingClientRect();
     return [box.x + box.width / 2, box.y + box.height / 2];
+}"""
+# Whether an element is part of a button, which is clicked then.
+CLICK_BUTTON = """(one) => {
+    const button = one && one.closest('button');
+    if (button) button.click();
+    return Boolean(button);
 }"""
 # The centre of an element, unless another element covers it and would receive the click.
 UNCOVERED = """(one, middle) => {
