@@ -1,8 +1,10 @@
 """Inspection and priority of a project's processes."""
 
 import contextlib
+import subprocess
+import time
 from pathlib import Path
-from typing import Collection, Dict, List, Tuple
+from typing import Collection, Dict, List, NamedTuple, Sequence, Tuple
 
 import psutil
 
@@ -14,6 +16,38 @@ BUSY_NICENESS = 15
 # name is not known, no longer count as starting [s].
 NODE_SECONDS, PROGRAM_SECONDS = 30.0, 3.0
 SHELLS = ("", "bash", "sh", "dash", "zsh")
+
+
+class ListedProcess(NamedTuple):
+    """A process of a run.
+
+    Attributes:
+        process: To ask it for more, or to signal it.
+        parent: Process that has started it, or has adopted it.
+        name: Name of its program, as the kernel shortens it.
+        command: Its command line.
+        age: Wall time since it was started [s].
+    """
+
+    process: psutil.Process
+    parent: int
+    name: str
+    command: List[str]
+    age: float
+
+
+def list_processes(helpers: Sequence["subprocess.Popen[bytes]"]) -> List[ListedProcess]:
+    """List all descendants of this process, except some children and what these have started."""
+    excluded, listed, now = {helper.pid for helper in helpers}, [], time.time()
+    for process in psutil.Process().children(recursive=True):  # parents come before their children
+        with contextlib.suppress(psutil.NoSuchProcess), process.oneshot():
+            pid, parent = process.pid, process.ppid()
+            if parent in excluded or pid in excluded:
+                excluded.add(pid)
+            elif process.status() != psutil.STATUS_ZOMBIE:
+                age = now - process.create_time()
+                listed.append(ListedProcess(process, parent, process.name(), process.cmdline(), age))
+    return listed
 
 
 def waits_for_input(process: psutil.Process) -> bool:

@@ -15,8 +15,9 @@ import rospy
 from run_project.real_time_limit import RealTimeLimit
 from run_project.ros.observer import Observer
 from run_project.ros.processes import (
-    NODE_SECONDS,
     BusyProcesses,
+    ListedProcess,
+    list_processes,
     program_of,
     starting_seconds,
     waits_for_input,
@@ -123,7 +124,7 @@ class ProjectRun:
         if self.user is not None:
             self.user.stop()
         rospy.signal_shutdown("the run is over")
-        others = _project_descendants(self._helpers)
+        others = [each.process for each in list_processes(self._helpers)]
         for process in others:
             with contextlib.suppress(psutil.NoSuchProcess):
                 process.send_signal(signal.SIGINT)
@@ -163,20 +164,21 @@ class ProjectRun:
             windows = self._windows.opened()
             for window in windows:
                 self._log_event(f"{observer.simulated_time:7.1f} s  window {window}")
-            self._limit.update(now, _is_a_script_sleeping() or self._are_nodes_starting(), bool(windows))
+            listed = list_processes(self._helpers)
+            self._limit.update(now, self._is_something_starting(listed), bool(windows))
             self._display.show(observer.status())
             if observer.simulated_time != moved_time:
                 moved_wall, moved_time = now, observer.simulated_time
             if now - latest_enter > ENTER_SECONDS:
                 latest_enter = now
                 _press_enter(script)
-            processes = self._project_processes()
+            processes = [each.process for each in listed if self._is_of_project(each.command)]
             self._busy.lower_priority(processes, now)
             self._report_waiting_programs(processes)
             has_nodes = bool(processes)
             had_nodes = had_nodes or has_nodes
             nodes_are_gone = had_nodes and not has_nodes
-            if self._is_done(script.poll() is not None, now - self._last_event_wall, nodes_are_gone):
+            if self._is_done(script.poll() is not None, now - self._last_event_wall, nodes_are_gone, listed):
                 return self._script_failure(script.poll())
             if now > deadline:
                 self.is_over_time = True
@@ -190,11 +192,17 @@ class ProjectRun:
                 return "the ROS master has ended"
             time.sleep(POLL_SECONDS)
 
-    def _is_done(self, script_is_over: bool, quiet_wall: float, nodes_are_gone: bool) -> bool:
+    def _is_done(
+        self,
+        script_is_over: bool,
+        quiet_wall: float,
+        nodes_are_gone: bool,
+        listed: Sequence[ListedProcess],
+    ) -> bool:
         record = self.observer.record
         if self.user is not None:
             return self.user.is_done
-        if (script_is_over and not _project_descendants(self._helpers)) or record.goals_of_two_rounds:
+        if (script_is_over and not listed) or record.goals_of_two_rounds:
             return True
         if nodes_are_gone and script_is_over:
             return quiet_wall > (SETTLED_SECONDS if record.goals or record.markers else IDLE_WALL_SECONDS)
@@ -258,39 +266,24 @@ class ProjectRun:
                 raise LaunchError(f"no ROS master came up, see {self._logs / 'master.log'}")
             time.sleep(0.05)
 
-    def _are_nodes_starting(self) -> bool:
-        """Whether a program has been started that is not yet a node of the graph."""
-        for process in _project_descendants(self._helpers):
-            with contextlib.suppress(psutil.Error):
-                age = time.time() - process.create_time()
-                if age > NODE_SECONDS:
-                    continue  # its children would be searched among all processes
-                command, has_children = process.cmdline(), bool(process.children())
-                is_of_project = self._is_of_project(command)
-                if age < starting_seconds(command, has_children, is_of_project, self.observer.nodes):
-                    return True
-        return False
-
-    def _project_processes(self) -> List[psutil.Process]:
-        """Processes of programs in the project's copy: neither shells nor ROS tools."""
-        found = []
-        for process in psutil.Process().children(recursive=True):
-            with contextlib.suppress(psutil.NoSuchProcess):
-                if self._is_of_project(process.cmdline()):
-                    found.append(process)
-        return found
+    def _is_something_starting(self, listed: Sequence[ListedProcess]) -> bool:
+        """Whether a script sleeps, or a program has been started that is not yet a node of the graph."""
+        parents = {each.parent for each in listed}
+        return any(
+            each.name == "sleep"
+            or each.age
+            < starting_seconds(
+                each.command,
+                each.process.pid in parents,
+                self._is_of_project(each.command),
+                self.observer.nodes,
+            )
+            for each in listed
+        )
 
     def _is_of_project(self, command: List[str]) -> bool:
         program = program_of(command)
         return str(self._project_command.work) in program and not program.endswith(SETUP_TOOL)
-
-
-def _is_a_script_sleeping() -> bool:
-    for process in psutil.Process().children(recursive=True):
-        with contextlib.suppress(psutil.NoSuchProcess):
-            if process.name() == "sleep":
-                return True
-    return False
 
 
 def _press_enter(script: "subprocess.Popen[bytes]") -> None:
@@ -299,18 +292,3 @@ def _press_enter(script: "subprocess.Popen[bytes]") -> None:
         with contextlib.suppress(OSError):
             script.stdin.write(b"\n")
             script.stdin.flush()
-
-
-def _project_descendants(helpers: List[subprocess.Popen]) -> List[psutil.Process]:
-    """All processes of the run except the ROS master and the recorder."""
-    own = set()
-    for helper in helpers:
-        with contextlib.suppress(psutil.NoSuchProcess):
-            process = psutil.Process(helper.pid)
-            own |= {process, *process.children(recursive=True)}
-    found = []
-    for process in psutil.Process().children(recursive=True):
-        with contextlib.suppress(psutil.NoSuchProcess):
-            if process not in own and process.status() != psutil.STATUS_ZOMBIE:
-                found.append(process)
-    return found
