@@ -18,7 +18,7 @@ from waiting import wait_until
 ROOT = Path(__file__).resolve().parents[2]
 MAPPING_NODES = ("slam_gmapping", "move_base", "explore", "robot_state_publisher", "slam_gmapping")
 NODES = ("amcl", "move_base", "pick_objects", "map_server", "add_markers", "robot_state_publisher", "rosout")
-RUN_SECONDS = 200.0
+RUN_SECONDS = 400.0
 BACK_SECONDS = 20.0
 APART_SECONDS, APART_EXPLORING_SECONDS = 1.0, 5.0
 
