@@ -4,6 +4,8 @@
     python3 tests/benchmarks/moving_obstacles.py scenarios/crossings.yaml --seeds 0-19
     python3 tests/benchmarks/moving_obstacles.py scenarios/crossings.yaml --families hard --seeds 100-109
 
+With --gif FOLDER, the last seconds before each contact are drawn: true obstacles grey, tracked ones red, with
+their velocities, the robot blue, and violet what it intended.
 With --families the scenario's world is replaced by those of each family: easy, medium and hard are DynaBARN's
 levels, the others the motions of laboratory.generators.motions.
 A contact was avoidable if a search over the robot's controls, with the true motion of all obstacles, finds a
@@ -19,7 +21,7 @@ from pathlib import Path
 from typing import List
 
 import numpy as np
-from helpers.timed_navigation import TimedNavigation
+from helpers.drive_animation import FilmedNavigation, save_end
 
 from headless_mission import EpisodeConditions
 from laboratory.generators.crossings import POLYNOMIALS, STRAIGHT, CrossingCylinders
@@ -71,7 +73,10 @@ def main() -> int:
     options = _options()
     names = options.families or options.scenarios
     kinds = [(file, family) for file in options.scenarios for family in options.families or [None]]
-    tasks = [(*kind, seed) for kind in kinds for seed in parse_seeds(options.seeds)]
+    folder = options.gif
+    if folder is not None:
+        folder.mkdir(parents=True, exist_ok=True)
+    tasks = [(*kind, seed, folder) for kind in kinds for seed in parse_seeds(options.seeds)]
     runs: List[Run] = []
     with Pool(options.jobs) as pool:
         for run in pool.imap(_run, tasks):
@@ -86,7 +91,7 @@ def main() -> int:
 
 
 def _run(task) -> Run:
-    name, family, seed = task
+    name, family, seed, folder = task
     scenario = load_scenario(name)
     if family is not None:
         name, scenario = family, replace(scenario, world=FAMILIES[family])
@@ -98,7 +103,7 @@ def _run(task) -> Run:
     )
     warm_up(settings)
     simulation = Simulation(arena.world, robot, scenario.simulation, seed, start)
-    navigation = TimedNavigation(settings)
+    navigation = FilmedNavigation(settings)
     drive = OdomGoalDrive(simulation, navigation, scenario.task, start)
     try:
         outcome, text = drive.run(scenario.seconds)
@@ -120,6 +125,9 @@ def _run(task) -> Run:
     )
     state, stamp = state_before(track, BEFORE)
     obstacles = TrueObstacles.of_world(arena.world)
+    if folder is not None:
+        outline = (float(half_length), float(half_width))
+        save_end(folder / f"{Path(name).stem}_{seed}.gif", navigation.moments, obstacles, outline)
     is_avoidable = can_avoid(obstacles, limits, state, drive.start_stamp + stamp, BEFORE + AFTER)
     speed = state_before(track, 0.1)[0][3]
     return Run(**{**asdict(run), "avoidable": is_avoidable, "speed": speed})
@@ -153,6 +161,7 @@ def _options():
     parser.add_argument("--families", nargs="+", choices=FAMILIES, help="worlds instead of the scenario's")
     parser.add_argument("--seeds", default="0-19", help="such as 0-19 or 1,5,7")
     parser.add_argument("--jobs", type=int, default=1, help="processes")
+    parser.add_argument("--gif", type=Path, metavar="FOLDER", help="folder for an animation of each contact")
     parser.add_argument("--json", help="file for the figures of every run")
     return parser.parse_args()
 

@@ -60,7 +60,7 @@ class NavigatorComponents:
             maps: Maps of the static layers.
         """
         self.costmaps = Costmaps(self.settings, maps, self.zones)
-        self._obstacle_tracker = DynamicObstacleTracker()
+        self.obstacle_tracker = DynamicObstacleTracker()
 
     def reset_controller(self) -> None:
         """Replace the controller, which keeps state of the goal."""
@@ -104,10 +104,10 @@ class NavigatorComponents:
         if settings is None or observation.topic != self.settings.scan_topic:
             return observation
         if np.ndim(observation.heights) == 0:
-            return self._obstacle_tracker.update(base_in_odom, observation, settings)
+            return self.obstacle_tracker.update(base_in_odom, observation, settings)
         # The ends of a tilted laser's beams on the floor move with the robot.
         above_floor = np.where(observation.heights > FLOOR_HEIGHT, observation.ranges, np.nan)
-        static = self._obstacle_tracker.update(
+        static = self.obstacle_tracker.update(
             base_in_odom, replace(observation, ranges=above_floor), settings
         )
         is_moving = np.isnan(static.ranges) & ~np.isnan(above_floor)
@@ -146,6 +146,6 @@ class NavigatorComponents:
             state.base_in_odom @ moved,
             twist,
             self.costmaps.local_costmap,
-            self._obstacle_tracker.obstacles_at(state.stamp + self.latency),
+            self.obstacle_tracker.obstacles_at(state.stamp + self.latency),
             self.costmaps.global_costmap,
         )

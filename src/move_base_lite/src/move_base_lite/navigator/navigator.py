@@ -153,6 +153,17 @@ class Navigator:
         """
         self._components.update_settings(settings)
 
+    def dynamic_obstacles_at(self, stamp: float) -> np.ndarray:
+        """Predict the obstacles that are known to move.
+
+        Args:
+            stamp: Time of the prediction [s].
+
+        Returns:
+            Rows (N, 5) of x, y, vx, vy, radius in the odom frame [m, m/s].
+        """
+        return self._components.obstacle_tracker.obstacles_at(stamp)
+
     @property
     def settings(self) -> NavigatorSettings:
         """Settings in use."""
