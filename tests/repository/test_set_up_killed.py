@@ -112,9 +112,10 @@ def orphans_adopted():
 def kill_session(leader, whole):
     """Kill the first process of a session, or all of them."""
     members = [leader]
-    for stat in Path("/proc").glob("[0-9]*/stat") if whole else ():
+    # Path.glob raises an error if a process ends while it looks.
+    for name in filter(str.isdigit, os.listdir("/proc")) if whole else ():
         with contextlib.suppress(OSError):
-            pid, _, rest = stat.read_text().partition(" (")
+            pid, _, rest = Path(f"/proc/{name}/stat").read_text().partition(" (")
             if int(rest.rpartition(") ")[2].split()[3]) == leader:
                 members.append(int(pid))
     for member in members:
