@@ -19,7 +19,7 @@ from projects import remove_work_folder
 
 SCRIPT = Path(__file__).resolve().parents[2] / "scripts/run_project.sh"
 SAMPLE = Path(__file__).resolve().parent / "sample_project"
-RUN_SECONDS = 240.0
+RUN_SECONDS = 480.0
 EXIT_SECONDS = 30.0
 
 

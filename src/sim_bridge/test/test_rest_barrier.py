@@ -83,6 +83,19 @@ def test_a_further_node_that_never_rests_is_given_up_soon():
     assert run.step() == pytest.approx(QUIET, abs=2 * LOOK)
 
 
+@pytest.mark.parametrize("name", ["planner", "viewer"])
+def test_a_node_is_not_given_up_because_the_machine_stands_still(name):
+    """All processes of a virtual machine stop for seconds, or get little time beside others."""
+    run = Run(**{name: 2.0 * PATIENCE + 0.15})
+    for stall in (PATIENCE + 0.1, PATIENCE):
+        run.barrier.is_passed(run.wall, run._nodes(), run.AWAITED, False, QUIET)
+        run.wall += LOOK
+        run.barrier.is_passed(run.wall, run._nodes(), run.AWAITED, False, QUIET)
+        run.wall += stall
+    assert run.step() == pytest.approx(0.05, abs=QUIET)
+    assert not run.barrier.given_up
+
+
 def test_a_node_that_is_late_once_is_waited_for_again():
     run = Run(planner=PATIENCE + 1.0)
     run.step()

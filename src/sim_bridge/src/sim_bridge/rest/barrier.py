@@ -1,6 +1,6 @@
 """Pace of simulated time beside nodes that do not take part in lock-step: time passes when they rest."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Callable, Container, Dict, Mapping, Optional
 
 # Time for which all nodes must rest after a message of the clock [wall s]: a loop of roscpp that sleeps in
@@ -22,6 +22,9 @@ MOST_NEWS = 20
 # Time after which a node that does not rest is given up, and time in which it must then rest at most of the
 # looks to be waited for again [wall s].
 PATIENCE_SECONDS, OTHERS_PATIENCE_SECONDS, RECOVERY_SECONDS = 5.0, 0.5, 2.0
+# Looks at which a node must have been busy before it is given up, per second of patience: where a machine
+# stands still, or many programs share it, time passes in which no node can come to rest.
+BUSY_LOOKS_PER_SECOND = 400.0
 
 
 @dataclass
@@ -32,6 +35,7 @@ class _Barrier:
         begun: When the simulation reached it [wall s].
         quiet_since: Since when all nodes rest [wall s].
         busy: Node that did not rest at the latest look; None if all did.
+        busy_looks: Number of looks at which a node was the first that did not rest, by name.
         rests: Number of the latest looks at which all nodes rested.
         news: Number of looks before which messages had arrived.
         next_look: When to look again [wall s].
@@ -40,6 +44,7 @@ class _Barrier:
     begun: float
     quiet_since: float
     busy: Optional[str] = None
+    busy_looks: Dict[str, int] = field(default_factory=dict)
     rests: int = 0
     news: int = 0
     next_look: float = 0.0
@@ -114,11 +119,13 @@ class RestBarrier:
             barrier.busy,
             next((name for name, rests in nodes.items() if name not in self.given_up and not rests()), None),
         )
-        if barrier.busy is not None and barrier.busy == before:
-            barrier.quiet_since = wall
+        if barrier.busy is not None:
+            looks = barrier.busy_looks[barrier.busy] = barrier.busy_looks.get(barrier.busy, 0) + 1
             patience = self._patience if barrier.busy in awaited else OTHERS_PATIENCE_SECONDS
-            if wall - barrier.begun > patience:
-                self.given_up[barrier.busy] = _Absence(wall)
+            if barrier.busy == before:
+                barrier.quiet_since = wall
+                if wall - barrier.begun > patience and looks > BUSY_LOOKS_PER_SECOND * patience:
+                    self.given_up[barrier.busy] = _Absence(wall)
         barrier.rests = barrier.rests + 1 if barrier.busy is None else 0
         pause = min(quiet / LOOKS, barrier.quiet_since + quiet - wall)
         barrier.next_look = wall + (max(LOOK_SECONDS, pause) if barrier.busy is None else LOOK_SECONDS)

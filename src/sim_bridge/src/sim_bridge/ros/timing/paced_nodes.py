@@ -157,7 +157,8 @@ class PacedNodes:
         nodes[SYNCHRONISED] = lambda: is_answered
         nodes[MESSAGES] = lambda: not has_undelivered(chosen)
         quiet = _quiet(self._is_graph_new, is_clock_due, is_clock_sent)
-        is_passed = self._barrier.is_passed(time.monotonic(), nodes, self._awaited(), has_news, quiet)
+        awaited = self._awaited() | {SYNCHRONISED, MESSAGES}
+        is_passed = self._barrier.is_passed(time.monotonic(), nodes, awaited, has_news, quiet)
         self._report()
         if is_passed:
             self._awaited_search, self._is_graph_new, self._sent_before = 0, False, sent
