@@ -10,6 +10,7 @@ import rostest
 from recording import is_connected_to_all
 from rosgraph_msgs.msg import Log
 from std_msgs.msg import String
+from tf2_msgs.msg import TFMessage
 from waiting import wait_until
 
 from planar_ros.messages.conversion import LaserScanArrays
@@ -39,13 +40,16 @@ class TestPaceOfAll(unittest.TestCase):
 
 def check_pace(test):
     """Check that simulated time waits for the work of this node on each scan."""
-    stamps, ahead, sentences = [], [], []
+    stamps, ahead, sentences, transformed, untransformed = [], [], [], set(), []
 
     def work(scan):
         stamps.append(scan.header.stamp.to_sec())
+        if scan.header.stamp not in transformed:
+            untransformed.append(len(stamps) - 1)
         compute(WORK_SECONDS)
         ahead.append(rospy.get_time() - stamps[-1])
 
+    rospy.Subscriber("/tf", TFMessage, lambda message: transformed.add(message.transforms[0].header.stamp))
     rospy.Subscriber("scan", LaserScanArrays, work, queue_size=1, tcp_nodelay=True)
     rospy.Subscriber(PACE_TOPIC, String, lambda message: sentences.append(message.data))
     wait_until("a rule for this node", lambda: any("paced_node:" in text for text in sentences), 60.0)
@@ -53,6 +57,8 @@ def check_pace(test):
     wait_until("scans", lambda: len(stamps) > first + 100, 60.0)
     gaps = [later - earlier for earlier, later in zip(stamps[first:], stamps[first + 1 :])]
     test.assertLess(max(gaps), SCAN_PERIOD + 1e-6, "the node misses no scan although it keeps only one")
+    # Filters of tf2_ros lose a scan whose transform arrives while they add it.
+    test.assertFalse([i for i in untransformed if i > first], "the transform of a scan comes before it")
     # In real time, the clock would be ahead by the time of the work.
     test.assertLess(max(ahead[first:]), -1e-6, "the clock shows the time of a scan after the work on it")
 

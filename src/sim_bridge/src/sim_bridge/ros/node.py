@@ -2,6 +2,7 @@
 
 import dataclasses
 import threading
+from functools import partial
 from itertools import chain
 from pathlib import Path
 from typing import Any, Callable, Dict, List, Mapping, Tuple
@@ -10,7 +11,7 @@ import rospy
 from rospkg import RosPack
 from visualization_msgs.msg import Marker
 
-from planar import PlanarError, Pose2
+from planar import PlanarError, Pose2, Scan
 from planar.config.settings import check
 from planar.geometry.pose import pose_of_text
 from planar.maps.semantic_map import load_objects
@@ -45,7 +46,7 @@ from sim_bridge.ros.timing.time_control import TimeControl
 from sim_bridge.scene import Scene
 from sim_bridge.sdf import load_world
 from sim_bridge.sensors.object_detector import with_object_detector
-from sim_bridge.simulation import ROBOT_NAME, box_on_floor
+from sim_bridge.simulation import ROBOT_NAME, StepResult, box_on_floor
 from sim_bridge.views.section import warm_up
 from sim_bridge.world import World
 
@@ -135,7 +136,14 @@ class Bridge:
         return PacedNodes(self._calls, remark, rules, search, messages, settings.pace_all)
 
     def _step(self):
-        self._faults.update(self._scene, self._robots.step())
+        results = self._robots.step()
+        if self._time.may_defer and any(_has_scan(result) for result in results.values()):
+            self._robots.publish_motion(results)
+            self._time.defer(partial(self._robots.publish_sensors, results))
+        else:
+            self._robots.publish_sensors(results)
+            self._robots.publish_motion(results)
+        self._faults.update(self._scene, results)
         self._gazebo.publish()
         self._time.on_step_finished()
 
@@ -150,6 +158,10 @@ class Bridge:
             rospy.loginfo("%s added", name)
         except PlanarError as error:
             rospy.logwarn("box not added: %s", error)
+
+
+def _has_scan(result: StepResult) -> bool:
+    return any(isinstance(reading.value, Scan) for reading in result.readings.values())
 
 
 def _read(kind: type, defaults: Mapping[str, Any] = {}) -> Any:

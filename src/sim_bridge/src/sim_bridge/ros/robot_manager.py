@@ -87,15 +87,28 @@ class RobotManager:
             topics.skip(count)
 
     def step(self) -> Mapping[str, StepResult]:
-        """Step the scene by one odometry period; return the result of each robot."""
+        """Step the scene by one odometry period; return the result of each robot, to be published."""
         commands = {name: topics.pop_command() for name, topics in self._robots.items()}
         results = self._scene.step({name: command for name, command in commands.items() if command})
+        for topics in self._robots.values():
+            topics.count_step()
+        return results
+
+    def publish_sensors(self, results: Mapping[str, StepResult]) -> None:
+        """Publish the readings of a step except odometry."""
+        for name, topics in self._robots.items():
+            if name in results:
+                topics.publish_sensors(results[name])
+
+    def publish_motion(self, results: Mapping[str, StepResult]) -> None:
+        """Publish odometry, ground truth and transforms of a step."""
         transforms = [
-            transform for name, topics in self._robots.items() for transform in topics.publish(results[name])
+            transform
+            for name, topics in self._robots.items()
+            for transform in topics.publish_motion(results[name])
         ]
         if transforms:
             self._tf.publish(TransformsMsg(transforms))
-        return results
 
 
 def _tf_prefix(namespace: str) -> str:

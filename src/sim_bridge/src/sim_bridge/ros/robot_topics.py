@@ -89,9 +89,12 @@ class RobotTopics:
         self._sensors.enable_subscribed()
         return self._commands.pop(self._scene.stamp)
 
-    def publish(self, observation: StepResult) -> List[TransformMsg]:
-        """Publish the readings of a step, and return its transforms."""
+    def count_step(self) -> None:
+        """Count a step; to be called before its results are published."""
         self._steps += 1
+
+    def publish_sensors(self, observation: StepResult) -> None:
+        """Publish the readings of a step except odometry."""
         stamp = time_of(observation.stamp)
         joint_states = self._profile.joint_states
         if joint_states is not None and self._joints_are_due():
@@ -104,9 +107,12 @@ class RobotTopics:
             self._power.publish(observation.power, stamp)
         for text in self._scene.view.warnings:
             rospy.logwarn_once(text)
+
+    def publish_motion(self, observation: StepResult) -> List[TransformMsg]:
+        """Publish odometry and ground truth if they are due, and return the transforms."""
         if self._steps % self._odom_steps:
             return []
-        return self._publish_motion(observation, stamp)
+        return self._publish_motion(observation, time_of(observation.stamp))
 
     def publishers(self) -> List[CountingPublisher]:
         """Return the publishers of all topics of the robot."""

@@ -124,6 +124,7 @@ class PacedNodes:
         is_clock_due: bool,
         is_clock_sent: bool,
         before_tick: bool = False,
+        in_any_case: bool = False,
     ) -> bool:
         """Return whether the nodes have rested at this barrier.
 
@@ -133,6 +134,7 @@ class PacedNodes:
             is_clock_due: Whether this time will be published after this barrier.
             is_clock_sent: Whether this time has been published.
             before_tick: Whether the synchronised nodes, which receive messages of the others, must rest, too.
+            in_any_case: Whether nodes must rest whose messages no other one receives, too.
         """
         if not self.are_any:
             return True
@@ -149,7 +151,7 @@ class PacedNodes:
         if is_settling and is_clock_due and not self._are_connected():
             return False
         sent = _sent_counts()
-        must_look = self._barrier.is_begun or is_settling or has_news or before_tick
+        must_look = self._barrier.is_begun or is_settling or has_news or before_tick or in_any_case
         if not must_look and not self._are_woken(sent, is_clock_due or is_clock_sent):
             return True
         chosen = self._chosen(is_settling or before_tick)

@@ -3,7 +3,7 @@
 import time
 from concurrent.futures import CancelledError, Future
 from dataclasses import dataclass
-from typing import List
+from typing import Callable, List, Optional
 
 import rospy
 from rosgraph_msgs.msg import Clock
@@ -68,6 +68,7 @@ class TimeControl:
         self._pacer = pacer
         self._calls = calls
         self._requests: List[_StepRequest] = []
+        self._deferred: Optional[Callable[[], None]] = None
         rospy.Subscriber(PROGRESS_TOPIC, Header, self._on_progress, queue_size=100, tcp_nodelay=True)
         rospy.Service("~step", Step, self._on_step)
         self._stall_reporter = StallReporter()
@@ -95,9 +96,27 @@ class TimeControl:
         self._stall_reporter.update([] if may_step else self._waiting_for())
         return may_step
 
+    @property
+    def may_defer(self) -> bool:
+        """Whether a part of a step may be published later, when nodes have processed the other part."""
+        return self._paced.are_any and not self._requests
+
+    def defer(self, publish: Callable[[], None]) -> None:
+        """Publish a part of a step when the nodes that are not synchronised have processed the other part.
+
+        A message filter of tf2_ros (0.7.6) loses a scan if its transform arrives, in another thread, while
+        the filter adds it.
+        """
+        self._deferred = publish
+
     def _may_step(self) -> bool:
+        if self._deferred is not None:
+            if not self._have_nodes_rested(in_any_case=True):
+                return self._wait(self._paced.pause)
+            self._deferred()
+            self._deferred = None
         if self._is_clock_due:
-            if not self._have_nodes_rested():
+            if not self._have_nodes_rested(is_clock_due=True):
                 return self._wait(self._paced.pause)
             self._publish_clock()
         if self.is_paused and not self._requests:
@@ -134,7 +153,9 @@ class TimeControl:
             self._idle.skip(count)
             self._steps += count
 
-    def _have_nodes_rested(self, before_tick: bool = False) -> bool:
+    def _have_nodes_rested(
+        self, is_clock_due: bool = False, before_tick: bool = False, in_any_case: bool = False
+    ) -> bool:
         """Whether nodes have caught up that neither support lock-step nor report; not asked in real time."""
         if 0.0 < self.speed <= REAL_TIME:
             return True
@@ -143,9 +164,10 @@ class TimeControl:
         return self._paced.have_rested(
             self._scene.stamp,
             self._lock_step.is_answered,
-            self._is_clock_due,
+            is_clock_due,
             self._is_clock_sent,
             before_tick,
+            in_any_case,
         )
 
     def _publish_clock(self) -> None:
@@ -195,7 +217,7 @@ class TimeControl:
 
     def reset_simulation(self) -> None:
         self._scene.reset()
-        self._is_clock_due = False
+        self._is_clock_due, self._deferred = False, None
         self._pacer.reset()
         self._lock_step.reset_time()
         self._paced.reset_time()
