@@ -40,7 +40,7 @@ def list_processes(helpers: Sequence["subprocess.Popen[bytes]"]) -> List[ListedP
     """List all descendants of this process, except some children and what these have started."""
     excluded, listed, now = {helper.pid for helper in helpers}, [], time.time()
     for process in psutil.Process().children(recursive=True):  # parents come before their children
-        with contextlib.suppress(psutil.NoSuchProcess), process.oneshot():
+        with contextlib.suppress(psutil.Error), process.oneshot():
             pid, parent = process.pid, process.ppid()
             if parent in excluded or pid in excluded:
                 excluded.add(pid)
