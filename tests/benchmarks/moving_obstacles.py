@@ -22,6 +22,7 @@ from typing import List
 
 import numpy as np
 from helpers.drive_animation import FilmedNavigation, save_end
+from helpers.timed_navigation import TimedNavigation
 
 from headless_mission import EpisodeConditions
 from laboratory.generators.crossings import POLYNOMIALS, STRAIGHT, CrossingCylinders
@@ -103,7 +104,7 @@ def _run(task) -> Run:
     )
     warm_up(settings)
     simulation = Simulation(arena.world, robot, scenario.simulation, seed, start)
-    navigation = FilmedNavigation(settings)
+    navigation = TimedNavigation(settings) if folder is None else FilmedNavigation(settings)
     drive = OdomGoalDrive(simulation, navigation, scenario.task, start)
     try:
         outcome, text = drive.run(scenario.seconds)
@@ -125,7 +126,7 @@ def _run(task) -> Run:
     )
     state, stamp = state_before(track, BEFORE)
     obstacles = TrueObstacles.of_world(arena.world)
-    if folder is not None:
+    if isinstance(navigation, FilmedNavigation):
         outline = (float(half_length), float(half_width))
         save_end(folder / f"{Path(name).stem}_{seed}.gif", navigation.moments, obstacles, outline)
     is_avoidable = can_avoid(obstacles, limits, state, drive.start_stamp + stamp, BEFORE + AFTER)
