@@ -56,6 +56,7 @@ class CockpitReplayTest(unittest.TestCase):
             page.wait_for("59.9 s of 59.9 s", seconds=30.0)
             wait_until("the log message", lambda: times_logged(showing) > logged_before)
             self.assertEqual(times_logged(showing), logged_before + 1)
+            page.choose("Speed", "1 x")  # slow enough to be looked at before it ends again
             page.fill_in("Time, s", "30")
             wait_until("a number after the end", lambda: 30 <= at["/number"].newest.data < 59)
             self.assertEqual(page.errors, [])

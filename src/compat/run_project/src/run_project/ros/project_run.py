@@ -1,13 +1,14 @@
 """Run of a project's script under a private ROS master, watched until its work is done."""
 
 import contextlib
+import math
 import os
 import signal
 import subprocess
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Dict, List, Mapping, Optional, Sequence, Set
+from typing import Dict, List, Mapping, Optional, Sequence, Set, Tuple
 
 import psutil
 import rospy
@@ -35,6 +36,8 @@ POLL_SECONDS = 0.2
 MASTER_SECONDS = 30.0
 ENTER_SECONDS = 5.0
 SIGINT_SECONDS = 4.0
+# Time without processes after which they count as gone: a list is not made in one moment.
+GONE_SECONDS = 1.0
 # Time without events after which a run is over. SETTLED: no process of the project is left; IDLE: no goal is
 # active.
 SETTLED_SECONDS = 3.0
@@ -94,7 +97,8 @@ class ProjectRun:
         self._helpers: List[subprocess.Popen] = []
         self._waiting_for_input: Set[int] = set()
         self._windows = WindowLogs(logs)
-        self._last_event_wall = time.monotonic()
+        self._last_event_wall = self._process_wall = time.monotonic()
+        self._node_wall = math.inf
         self.is_over_time = False
         self._busy = BusyProcesses()
         self._limit = RealTimeLimit(float(str(parameters["/gazebo/speed"])), SimulatorSpeed().set)
@@ -156,7 +160,7 @@ class ProjectRun:
         deadline = time.monotonic() + timeout
         self._limit.start(time.monotonic())
         script = self._start_script()
-        observer, had_nodes, latest_enter = self.observer, False, time.monotonic()
+        observer, latest_enter = self.observer, time.monotonic()
         moved_wall, moved_time = time.monotonic(), -1.0
         while True:
             now = time.monotonic()
@@ -164,7 +168,7 @@ class ProjectRun:
             windows = self._windows.opened()
             for window in windows:
                 self._log_event(f"{observer.simulated_time:7.1f} s  window {window}")
-            listed = list_processes(self._helpers)
+            listed, processes = self._list_processes(now)
             self._limit.update(now, self._is_something_starting(listed), bool(windows))
             self._display.show(observer.status())
             if observer.simulated_time != moved_time:
@@ -172,13 +176,9 @@ class ProjectRun:
             if now - latest_enter > ENTER_SECONDS:
                 latest_enter = now
                 _press_enter(script)
-            processes = [each.process for each in listed if self._is_of_project(each.command)]
             self._busy.lower_priority(processes, now)
             self._report_waiting_programs(processes)
-            has_nodes = bool(processes)
-            had_nodes = had_nodes or has_nodes
-            nodes_are_gone = had_nodes and not has_nodes
-            if self._is_done(script.poll() is not None, now - self._last_event_wall, nodes_are_gone, listed):
+            if self._is_done(script.poll() is not None, now):
                 return self._script_failure(script.poll())
             if now > deadline:
                 self.is_over_time = True
@@ -192,19 +192,21 @@ class ProjectRun:
                 return "the ROS master has ended"
             time.sleep(POLL_SECONDS)
 
-    def _is_done(
-        self,
-        script_is_over: bool,
-        quiet_wall: float,
-        nodes_are_gone: bool,
-        listed: Sequence[ListedProcess],
-    ) -> bool:
-        record = self.observer.record
+    def _list_processes(self, now: float) -> Tuple[List[ListedProcess], List[psutil.Process]]:
+        """All processes of the run but the helpers, and of these the project's own nodes."""
+        listed = list_processes(self._helpers)
+        nodes = [each.process for each in listed if self._is_of_project(each.command)]
+        self._process_wall = now if listed else self._process_wall
+        self._node_wall = now if nodes else self._node_wall
+        return listed, nodes
+
+    def _is_done(self, script_is_over: bool, now: float) -> bool:
+        record, quiet_wall = self.observer.record, now - self._last_event_wall
         if self.user is not None:
             return self.user.is_done
-        if (script_is_over and not listed) or record.goals_of_two_rounds:
+        if (script_is_over and now - self._process_wall > GONE_SECONDS) or record.goals_of_two_rounds:
             return True
-        if nodes_are_gone and script_is_over:
+        if script_is_over and now - self._node_wall > GONE_SECONDS:
             return quiet_wall > (SETTLED_SECONDS if record.goals or record.markers else IDLE_WALL_SECONDS)
         quiet_simulated = self.observer.simulated_time - record.last_event_time
         if record.goals:
