@@ -138,6 +138,20 @@ def test_time_that_restarts_begins_a_new_barrier():
 SPIN = "while True: pass"
 REST = "import threading, time; threading.Thread(target=time.sleep, args=(60,)).start(); time.sleep(60)"
 
+# On a line, a thread that waits ends, and one that computes begins.
+REPLACED = """
+import sys, threading, time
+end = threading.Event()
+waiting = threading.Thread(target=end.wait)
+waiting.start()
+sys.stdin.readline()
+end.set()
+waiting.join()
+threading.Thread(target=lambda: [None for _ in iter(int, 1)]).start()
+print(flush=True)
+time.sleep(60)
+"""
+
 
 @pytest.fixture
 def program():
@@ -145,7 +159,12 @@ def program():
 
     def start(code):
         started.append(
-            subprocess.Popen([sys.executable, "-c", f"print(flush=True)\n{code}"], stdout=subprocess.PIPE)
+            subprocess.Popen(
+                [sys.executable, "-c", f"print(flush=True)\n{code}"],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                text=True,
+            )
         )
         started[-1].stdout.readline()
         return started[-1]
@@ -174,6 +193,17 @@ def test_threads_that_sleep_rest(program):
 
 def test_a_thread_that_computes_does_not_rest(program):
     assert rests(ProcessThreads(program(SPIN).pid), False)
+
+
+def test_a_thread_that_begins_as_another_ends_is_looked_at(program):
+    process = program(REPLACED)
+    threads = ProcessThreads(process.pid)
+    assert rests(threads, True)
+    process.stdin.write("\n")
+    process.stdin.flush()
+    process.stdout.readline()
+    assert rests(threads, False)
+    threads.close()
 
 
 def test_a_thread_that_hands_over_to_one_that_was_read_before_hides_it_once(tmp_path, monkeypatch):

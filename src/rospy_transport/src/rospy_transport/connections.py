@@ -1,10 +1,12 @@
 """What rospy knows about the topics and connections of this node; rospy publishes only their number."""
 
 import fcntl
+import operator
+import select
 import socket
 import termios
 from array import array
-from typing import Any, Container, FrozenSet, Iterator, List, Set, Tuple
+from typing import Any, Container, Dict, FrozenSet, List, Sequence, Set, Tuple
 
 import rospy
 from rospy.impl.registration import get_topic_manager
@@ -15,15 +17,40 @@ from rospy_transport.arrival import has_arrived
 from rospy_transport.replacements import ImmediateConnection
 
 
-def outgoing() -> Iterator[Tuple[str, str, Any]]:
-    """Yield receiver, topic and connection of everything this node publishes.
+class _OutgoingConnections:
+    """Receiver, topic and connection of everything this node publishes.
+
+    They are listed again when rospy has replaced the connections of a topic, as it does with each change.
+    """
+
+    def __init__(self) -> None:
+        self._by_topic: List[List[Any]] = []
+        self._listed: List[Tuple[str, str, Any]] = []
+
+    def __call__(self) -> List[Tuple[str, str, Any]]:
+        topics = list(get_topic_manager().pubs.items())
+        by_topic = [publisher.connections for _, publisher in topics]
+        is_same = len(by_topic) == len(self._by_topic) and all(map(operator.is_, by_topic, self._by_topic))
+        if not is_same or sum(map(len, by_topic)) != len(self._listed):
+            self._listed = [
+                (connection.endpoint_id, topic, connection)
+                for (topic, _), made in zip(topics, by_topic)
+                for connection in made
+            ]
+            self._by_topic = by_topic
+        return self._listed
+
+
+_outgoing = _OutgoingConnections()
+
+
+def outgoing() -> Sequence[Tuple[str, str, Any]]:
+    """Return receiver, topic and connection of everything this node publishes.
 
     Needed to count the messages to each node; rospy makes a normal connection, without the replaced class,
     for a subscriber that connects before the queue size of the topic is known.
     """
-    for topic, publisher in list(get_topic_manager().pubs.items()):
-        for connection in publisher.connections:
-            yield connection.endpoint_id, topic, connection
+    return _outgoing()
 
 
 def message_count(connection: Any) -> int:
@@ -66,12 +93,16 @@ def has_unread() -> bool:
 
     Needed to process what other nodes have sent before simulated time passes.
     """
+    ends: Dict[int, socket.socket] = {}
+    readable = select.poll()
     for subscription in list(get_topic_manager().subs.values()):
         for connection in list(subscription.connections):
             end = getattr(connection, "socket", None)
-            if end is not None and _bytes_in(end, termios.FIONREAD):
-                return True
-    return False
+            number = end.fileno() if end is not None else -1
+            if end is not None and number >= 0:
+                ends[number] = end
+                readable.register(number, select.POLLIN)
+    return any(_bytes_in(ends[number], termios.FIONREAD) for number, _ in readable.poll(0))
 
 
 def has_undelivered(receivers: Container[str]) -> bool:

@@ -3,13 +3,15 @@
 import os
 import time
 from pathlib import Path
-from typing import Callable, Dict, Optional, Tuple
+from typing import Callable, Dict, List, Optional, Tuple
 
 # States of threads that wait, for an event or because they are stopped or have ended.
 WAITING_STATES = frozenset(b"SItTXZ")
 # Bytes of /proc/PID/task/TID/stat up to the state: two numbers and a name of at most 64 bytes.
 STAT_BYTES = 128
 PROC = Path("/proc")
+# Links of a folder without threads.
+FOLDER_LINKS = 2
 # Processor time that threads take which only look at the clock: share of the time between two looks at the
 # process, and time beyond that [s].
 IDLE_SHARE, IDLE_SECONDS = 0.25, 5e-5
@@ -30,6 +32,7 @@ class ProcessThreads:
         self.pid = pid
         self._folder = proc / str(pid) / "task"
         self._files: Dict[str, int] = {}
+        self._links = -1
         self._times = times or self._measured_times
         self._at_rest: Optional[Tuple[float, float]] = None
         self._is_backward = False
@@ -44,13 +47,8 @@ class ProcessThreads:
         Raises:
             ProcessLookupError: The process has ended.
         """
-        try:
-            names = os.listdir(self._folder)
-        except OSError:
-            raise ProcessLookupError(self.pid) from None
-        for gone in self._files.keys() - set(names):
-            os.close(self._files.pop(gone))
         self._is_backward = not self._is_backward
+        names = self._names()
         if not all(map(self._is_waiting, reversed(names) if self._is_backward else names)):
             self._at_rest = None
             return False
@@ -65,6 +63,23 @@ class ProcessThreads:
         while self._files:
             os.close(self._files.popitem()[1])
 
+    def _names(self) -> List[str]:
+        """List the threads: again if their number has changed, or if one could not be read.
+
+        The kernel counts a link of the folder for each thread; one that does not is asked at each call.
+        """
+        try:
+            links = self._folder.stat().st_nlink
+            if links == self._links and links == len(self._files) + FOLDER_LINKS:
+                return list(self._files)
+            names = os.listdir(self._folder)
+        except OSError:
+            raise ProcessLookupError(self.pid) from None
+        self._links = links
+        for gone in self._files.keys() - set(names):
+            os.close(self._files.pop(gone))
+        return names
+
     def _measured_times(self) -> Tuple[float, float]:
         try:
             processor = time.clock_gettime((~self.pid << 3) | 2)  # clock_getcpuclockid(3)
@@ -75,9 +90,10 @@ class ProcessThreads:
     def _is_waiting(self, name: str) -> bool:
         try:
             if name not in self._files:
-                self._files[name] = os.open(self._folder / name / "stat", os.O_RDONLY | os.O_CLOEXEC)
+                self._files[name] = os.open(f"{self._folder}/{name}/stat", os.O_RDONLY | os.O_CLOEXEC)
             stat = os.pread(self._files[name], STAT_BYTES, 0)
         except OSError:
+            self._links = -1
             return True  # the thread has ended
         return _state_in(stat) in WAITING_STATES
 

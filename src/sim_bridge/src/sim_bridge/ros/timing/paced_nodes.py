@@ -2,7 +2,7 @@
 
 import time
 from collections import Counter
-from typing import Callable, Dict, FrozenSet, List, Mapping, Set
+from typing import Callable, Dict, FrozenSet, List, Mapping, Set, Tuple
 
 import rospy
 from std_msgs.msg import String
@@ -70,6 +70,8 @@ class PacedNodes:
         self._threads: Dict[str, ProcessThreads] = {}
         self._ended: Dict[str, int] = {}
         self._nodes: Dict[str, FoundNode] = {}
+        self._taken: Tuple[Dict[str, FoundNode], FrozenSet[str], FrozenSet[str]]
+        self._taken = (self._nodes, frozenset(), frozenset())
         self._wanted: FrozenSet[str] = frozenset()
         self._synchronised: FrozenSet[str] = frozenset()
         self._submitted = 0
@@ -81,6 +83,7 @@ class PacedNodes:
         self._unconnectable: Set[str] = set()
         self._settled_at, self._is_graph_new = 0.0, False
         self._sent_before: Dict[str, int] = {}
+        self._sent_now: Dict[str, int] = {}
 
     @property
     def names(self) -> FrozenSet[str]:
@@ -150,10 +153,12 @@ class PacedNodes:
         is_settling = stamp < self._settled_at
         if is_settling and is_clock_due and not self._are_connected():
             return False
-        sent = _sent_counts()
-        must_look = self._barrier.is_begun or is_settling or has_news or before_tick or in_any_case
-        if not must_look and not self._are_woken(sent, is_clock_due or is_clock_sent):
-            return True
+        if not self._barrier.is_begun:
+            sent = _sent_counts()
+            must_look = is_settling or has_news or before_tick or in_any_case
+            if not must_look and not self._are_woken(sent, is_clock_due or is_clock_sent):
+                return True
+            self._sent_now = sent
         chosen = self._chosen(is_settling or before_tick)
         nodes = {name: self._rest_of(name, self._threads[name]) for name in sorted(chosen, reverse=True)}
         nodes[SYNCHRONISED] = lambda: is_answered
@@ -163,7 +168,7 @@ class PacedNodes:
         is_passed = self._barrier.is_passed(time.monotonic(), nodes, awaited, has_news, quiet)
         self._report()
         if is_passed:
-            self._awaited_search, self._is_graph_new, self._sent_before = 0, False, sent
+            self._awaited_search, self._is_graph_new, self._sent_before = 0, False, self._sent_now
         return is_passed
 
     def _are_connected(self) -> bool:
@@ -258,7 +263,12 @@ class PacedNodes:
         self._reported = given_up
 
     def _take_found(self) -> None:
-        self._nodes = self._search.nodes
+        """Take over what the search has found, unless it is what was taken last."""
+        found = (self._search.nodes, self._wanted, self._synchronised)
+        if found[0] is self._taken[0] and found[1:] == self._taken[1:]:
+            return
+        self._taken = found
+        self._nodes = found[0]
         for name in self._threads.keys() - self._nodes.keys():
             self._drop(name)
         for name, node in self._nodes.items():
