@@ -25,7 +25,7 @@ from supervision.display import print_error
 from supervision.interruption import INTERRUPTED, on_signals
 from supervision.processes import adopt_orphans
 
-UNIT_SECONDS = 900.0  # on a busy machine; usually a minute
+UNIT_SECONDS = 1800.0  # on a busy machine; usually a minute
 MOST_JOBS = 4
 UNIT_PLACES = ("src/**/test", "tests/runner", "tests/repository", "tests/fuzz", "tests/conformance")
 KINDS = ("unit", "ros", "all")
