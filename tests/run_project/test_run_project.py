@@ -36,20 +36,26 @@ class WithoutCompilerTest(unittest.TestCase):
 
 
 class RunProjectTest(unittest.TestCase):
+    """The tests share a checkout, so that it is compiled once."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls._folder = Path(tempfile.mkdtemp())
+        cls.addClassCleanup(shutil.rmtree, cls._folder)
+        cls._checkout = cls._folder / f"user_project_{uuid.uuid4().hex}"
+        shutil.copytree(SAMPLE, cls._checkout)
+        cls.addClassCleanup(remove_work_folder, cls._checkout)
+
     def setUp(self):
         self._mark = uuid.uuid4().hex
-        self._folder = Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self._folder)
-        self._checkout = self._folder / f"user_project_{self._mark}"
-        shutil.copytree(SAMPLE, self._checkout)
-        self.addCleanup(remove_work_folder, self._checkout)
+        self._output = Path(tempfile.mkdtemp(dir=self._folder))
 
     def test_a_project_is_built_run_and_judged_without_changing_it(self):
         hash_before = _hash_of(self._checkout)
         run = self._start(self._checkout)
         output, _ = run.communicate(timeout=RUN_SECONDS)
         self.assertEqual(run.returncode, 0, output)
-        result = json.loads(next(self._folder.glob("runs/*/result.json")).read_text())
+        result = json.loads(next(self._output.glob("*/result.json")).read_text())
         self.assertEqual([goal["status"] for goal in result["goals"]], ["succeeded", "succeeded"])
         self.assertEqual(result["markers"], ["shown at (1.00, 0.50)", "hidden", "shown at (-0.50, 0.50)"])
         self.assertEqual(result["collisions"], [])
@@ -83,9 +89,8 @@ class RunProjectTest(unittest.TestCase):
         self.assertEqual(processes_with(self._mark), [])
 
     def test_an_invalid_path_is_rejected_in_one_line(self):
-        for path, words in ((self._folder / "nowhere", "no such folder"), (self._folder, "")):
+        for path, words in ((self._output / "nowhere", "no such folder"), (self._output, "")):
             with self.subTest(path=path):
-                shutil.rmtree(self._checkout, ignore_errors=True)
                 run = self._start(path)
                 output, _ = run.communicate(timeout=EXIT_SECONDS)
                 self.assertEqual(run.returncode, 2)
@@ -94,13 +99,14 @@ class RunProjectTest(unittest.TestCase):
 
     def test_the_last_line_of_a_failing_script_is_the_reason(self):
         script = self._checkout / "catkin_ws/src/scripts/home_service.sh"
+        self.addCleanup(script.write_text, script.read_text())
         script.write_text("#!/bin/sh\necho give me the workspace\nexit 3\n")
         output, _ = self._start(self._checkout).communicate(timeout=RUN_SECONDS)
         self.assertIn("FAILURE: the script ended with exit code 3: give me the workspace;", output)
 
     def _start(self, path, *options):
         return subprocess.Popen(
-            [str(SCRIPT), str(path), "--output", str(self._folder / "runs"), *options],
+            [str(SCRIPT), str(path), "--output", str(self._output), *options],
             env={**os.environ, "RUN_PROJECT_TEST": self._mark},
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
