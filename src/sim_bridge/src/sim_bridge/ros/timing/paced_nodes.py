@@ -2,6 +2,7 @@
 
 import time
 from collections import Counter
+from enum import Enum
 from typing import Callable, Dict, FrozenSet, List, Mapping, Set, Tuple
 
 import rospy
@@ -34,6 +35,19 @@ MESSAGES = "messages"
 TICKS = "ticks"
 # Time without a new topic or service after which nodes have started [simulated s].
 SETTLING_SECONDS = 2.0
+
+
+class Before(Enum):
+    """What follows a barrier: readings whose transforms were sent, the clock, a tick, or the next step.
+
+    Before readings the nodes must rest even if no other one receives their messages, and before a tick the
+    synchronised nodes, which receive the messages of the others, must rest, too.
+    """
+
+    SENSORS = 1
+    CLOCK = 2
+    TICK = 3
+    STEP = 4
 
 
 class PacedNodes:
@@ -120,24 +134,14 @@ class PacedNodes:
         """Whether there may be nodes to wait for."""
         return bool(self._wanted) or self._paces_all
 
-    def have_rested(
-        self,
-        stamp: float,
-        is_answered: bool,
-        is_clock_due: bool,
-        is_clock_sent: bool,
-        before_tick: bool = False,
-        in_any_case: bool = False,
-    ) -> bool:
+    def have_rested(self, before: Before, stamp: float, is_answered: bool, is_clock_sent: bool) -> bool:
         """Return whether the nodes have rested at this barrier.
 
         Args:
+            before: What follows the barrier.
             stamp: Present simulated time [s].
             is_answered: Whether all synchronised nodes have answered; they send messages before.
-            is_clock_due: Whether this time will be published after this barrier.
             is_clock_sent: Whether this time has been published.
-            before_tick: Whether the synchronised nodes, which receive messages of the others, must rest, too.
-            in_any_case: Whether nodes must rest whose messages no other one receives, too.
         """
         if not self.are_any:
             return True
@@ -151,19 +155,19 @@ class PacedNodes:
             self._seen_changes, self._settled_at = self._search.changes, stamp + SETTLING_SECONDS
             self._is_graph_new = True
         is_settling = stamp < self._settled_at
-        if is_settling and is_clock_due and not self._are_connected():
+        if is_settling and before is Before.CLOCK and not self._are_connected():
             return False
         if not self._barrier.is_begun:
             sent = _sent_counts()
-            must_look = is_settling or has_news or before_tick or in_any_case
-            if not must_look and not self._are_woken(sent, is_clock_due or is_clock_sent):
+            must_look = is_settling or has_news or before in (Before.SENSORS, Before.TICK)
+            if not must_look and not self._are_woken(sent, before is Before.CLOCK or is_clock_sent):
                 return True
             self._sent_now = sent
-        chosen = self._chosen(is_settling or before_tick)
+        chosen = self._chosen(is_settling or before is Before.TICK)
         nodes = {name: self._rest_of(name, self._threads[name]) for name in sorted(chosen, reverse=True)}
         nodes[SYNCHRONISED] = lambda: is_answered
         nodes[MESSAGES] = lambda: not has_undelivered(chosen)
-        quiet = _quiet(self._is_graph_new, is_clock_due, is_clock_sent)
+        quiet = _quiet(self._is_graph_new, before, is_clock_sent)
         awaited = self._awaited() | {SYNCHRONISED, MESSAGES}
         is_passed = self._barrier.is_passed(time.monotonic(), nodes, awaited, has_news, quiet)
         self._report()
@@ -302,10 +306,10 @@ def _sent_counts() -> Dict[str, int]:
     return counts
 
 
-def _quiet(is_graph_new: bool, is_clock_due: bool, is_clock_sent: bool) -> float:
+def _quiet(is_graph_new: bool, before: Before, is_clock_sent: bool) -> float:
     """Return the time for which all nodes must rest at a barrier [wall s]."""
     if is_graph_new:
         return SETTLING_QUIET_SECONDS
-    if is_clock_due:
+    if before is Before.CLOCK:
         return BEFORE_CLOCK_QUIET_SECONDS
     return QUIET_SECONDS if is_clock_sent else DATA_QUIET_SECONDS

@@ -20,7 +20,7 @@ from sim_bridge.pacing import REAL_TIME, Pacer
 from sim_bridge.ros.call_queue import CallQueue
 from sim_bridge.ros.timing.idle_time import IdleTime
 from sim_bridge.ros.timing.lock_step import LockStep
-from sim_bridge.ros.timing.paced_nodes import PacedNodes
+from sim_bridge.ros.timing.paced_nodes import Before, PacedNodes
 from sim_bridge.scene import Scene
 
 # Longest single wait [wall s], so that a shutdown is noticed soon.
@@ -111,26 +111,26 @@ class TimeControl:
 
     def _may_step(self) -> bool:
         if self._deferred is not None:
-            if not self._have_nodes_rested(in_any_case=True):
+            if not self._have_nodes_rested(Before.SENSORS):
                 return self._wait(self._paced.pause)
             self._deferred()
             self._deferred = None
         if self._is_clock_due:
-            if not self._have_nodes_rested(is_clock_due=True):
+            if not self._have_nodes_rested(Before.CLOCK):
                 return self._wait(self._paced.pause)
             self._publish_clock()
         if self.is_paused and not self._requests:
             return self._wait(LONGEST_WAIT_SECONDS)
         if not self._is_clock_processed and self._lock_step.is_tick_due(self._scene.stamp):
             # What other nodes send at this time must not race with the tick of the nodes that receive it.
-            if not self._have_nodes_rested(before_tick=True):
+            if not self._have_nodes_rested(Before.TICK):
                 return self._wait(self._paced.pause)
             self._is_clock_processed = True
         if not self._lock_step.may_step(self._scene.stamp):
             return self._wait(LONGEST_WAIT_SECONDS)
         if self._calls.has_pending:  # of what was just delivered
             return self._wait(0.0)
-        if not self._have_nodes_rested():
+        if not self._have_nodes_rested(Before.STEP):
             return self._wait(self._paced.pause)
         self._pacer.synchronised_nodes = self._lock_step.member_names | self._paced.names
         self._pacer.limited_by = self._paced.limiting
@@ -153,21 +153,14 @@ class TimeControl:
             self._idle.skip(count)
             self._steps += count
 
-    def _have_nodes_rested(
-        self, is_clock_due: bool = False, before_tick: bool = False, in_any_case: bool = False
-    ) -> bool:
+    def _have_nodes_rested(self, before: Before) -> bool:
         """Whether nodes have caught up that neither support lock-step nor report; not asked in real time."""
         if 0.0 < self.speed <= REAL_TIME:
             return True
         reporting = {f"/{name}" for name in self._pacer.reporting}
         self._paced.set_nodes(self._lock_step.unable - reporting, self._lock_step.members | reporting)
         return self._paced.have_rested(
-            self._scene.stamp,
-            self._lock_step.is_answered,
-            is_clock_due,
-            self._is_clock_sent,
-            before_tick,
-            in_any_case,
+            before, self._scene.stamp, self._lock_step.is_answered, self._is_clock_sent
         )
 
     def _publish_clock(self) -> None:
