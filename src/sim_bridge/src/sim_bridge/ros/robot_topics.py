@@ -112,7 +112,11 @@ class RobotTopics:
         """Publish odometry and ground truth if they are due, and return the transforms."""
         if self._steps % self._odom_steps:
             return []
-        return self._publish_motion(observation, time_of(observation.stamp))
+        transforms = self._publish_odometry(observation.readings.get(Odometer.name))
+        if self._truth.get_num_connections():
+            self._truth_msg.fill(observation.base_in_world, observation.twist, time_of(observation.stamp))
+            self._truth.publish(self._truth_msg)
+        return transforms
 
     def publishers(self) -> List[CountingPublisher]:
         """Return the publishers of all topics of the robot."""
@@ -124,13 +128,6 @@ class RobotTopics:
         self._commands.close()
         if self._kobuki is not None:
             self._kobuki.close()
-
-    def _publish_motion(self, observation: StepResult, stamp: rospy.Time) -> List[TransformMsg]:
-        transforms = self._publish_odometry(observation.readings.get(Odometer.name))
-        if self._truth.get_num_connections():
-            self._truth_msg.fill(observation.base_in_world, observation.twist, stamp)
-            self._truth.publish(self._truth_msg)
-        return transforms
 
     def _publish_odometry(self, reading: Optional[Reading]) -> List[TransformMsg]:
         if reading is None:
