@@ -74,6 +74,7 @@ def test_the_rule_of_the_name_precedes_that_of_the_program_and_the_learned_one()
     assert kind("/planner", "planner") == "rest"
     assert kind("/driver", "driver", follows_clock=False) == "real_time"
     assert kind("/driver", "driver", follows_clock=False, named="driver:rest") == "rest"
+    assert KNOWN["move_base"].keeps == {"/tf", "/odom"}
 
 
 def test_a_node_on_another_machine_is_paced_by_its_stamps_only():

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Dict, Mapping, Optional
+from typing import Any, Dict, FrozenSet, Mapping, Optional
 
 from planar.config.hints import hint
 from planar.config.yaml_table import read_table
@@ -34,12 +34,14 @@ class PaceRule:
         topic: Topic of the node's stamped messages, for ``stamps``.
         reason: Why the node has this rule.
         repeats: How far runs repeat beside this node; empty: as usual for the kind.
+        keeps: Topics whose messages the node keeps until the clock, or another topic, has it use them.
     """
 
     kind: str
     topic: str = ""
     reason: str = ""
     repeats: str = ""
+    keeps: FrozenSet[str] = frozenset()
 
     def sentence(self, name: str) -> str:
         """Return the rule of a node in words: rule, reason, and how far runs repeat."""
@@ -108,7 +110,7 @@ def read_known_nodes(path: Path) -> Dict[str, PaceRule]:
     """Read the rules of known programs.
 
     Args:
-        path: YAML file: program -> ``rule`` and, optionally, ``repeats``.
+        path: YAML file: program -> ``rule`` and, optionally, ``repeats`` and ``keeps``.
 
     Raises:
         SettingsError: The file is not valid.
@@ -117,13 +119,14 @@ def read_known_nodes(path: Path) -> Dict[str, PaceRule]:
     rules: Dict[str, PaceRule] = {}
     for program in table:
         entry = table.table(program)
-        entry.allow_only("rule", "repeats")
+        entry.allow_only("rule", "repeats", "keeps")
         try:
             rule = parse_rule(entry.text("rule"))
         except SettingsError as error:
             raise entry.error_at("rule", f"is invalid: {error}") from None
         repeats = entry.text("repeats", REPEATS[rule.kind])
-        rules[program] = PaceRule(rule.kind, rule.topic, f"known program {program}", repeats)
+        keeps = frozenset(entry.text("keeps").split()) if "keeps" in entry else frozenset()
+        rules[program] = PaceRule(rule.kind, rule.topic, f"known program {program}", repeats, keeps)
     return rules
 
 

@@ -35,6 +35,8 @@ MESSAGES = "messages"
 TICKS = "ticks"
 # Time without a new topic or service after which nodes have started [simulated s].
 SETTLING_SECONDS = 2.0
+# Numbers of messages sent, by receiver and whether it keeps them.
+SentCounts = Dict[Tuple[str, bool], int]
 
 
 class Before(Enum):
@@ -84,8 +86,7 @@ class PacedNodes:
         self._threads: Dict[str, ProcessThreads] = {}
         self._ended: Dict[str, int] = {}
         self._nodes: Dict[str, FoundNode] = {}
-        self._taken: Tuple[Dict[str, FoundNode], FrozenSet[str], FrozenSet[str]]
-        self._taken = (self._nodes, frozenset(), frozenset())
+        self._taken: Tuple[object, ...] = (None,)
         self._wanted: FrozenSet[str] = frozenset()
         self._synchronised: FrozenSet[str] = frozenset()
         self._submitted = 0
@@ -96,8 +97,8 @@ class PacedNodes:
         self._awaited_search, self._unconnected_since = 0, 0.0
         self._unconnectable: Set[str] = set()
         self._settled_at, self._is_graph_new = 0.0, False
-        self._sent_before: Dict[str, int] = {}
-        self._sent_now: Dict[str, int] = {}
+        self._sent_before: SentCounts = {}
+        self._sent_now: SentCounts = {}
 
     @property
     def names(self) -> FrozenSet[str]:
@@ -158,7 +159,7 @@ class PacedNodes:
         if is_settling and before is Before.CLOCK and not self._are_connected():
             return False
         if not self._barrier.is_begun:
-            sent = _sent_counts()
+            sent = _sent_counts(self._nodes)
             must_look = is_settling or has_news or before in (Before.SENSORS, Before.TICK)
             if not must_look and not self._are_woken(sent, before is Before.CLOCK or is_clock_sent):
                 return True
@@ -216,17 +217,22 @@ class PacedNodes:
             return {name for name, kind in kinds.items() if kind != "observe"}
         return {name for name, kind in kinds.items() if kind == "rest" and self._is_paced(name)}
 
-    def _are_woken(self, sent: Mapping[str, int], with_all: bool) -> bool:
-        """Return whether something has been sent since all nodes rested that may have woken one of them.
+    def _are_woken(self, sent: SentCounts, with_all: bool) -> bool:
+        """Return whether something has been sent since all nodes rested that may have one of them work.
 
-        What a node does whose messages no other one receives matters when the clock is sent only.
+        What a node does whose messages no other one receives, or with messages that it keeps, matters when
+        the clock is sent only.
 
         Args:
             sent: Numbers of messages sent.
-            with_all: Whether all nodes matter.
+            with_all: Whether all nodes and messages matter.
         """
-        names = (name for name in self._chosen(False) if with_all or self._nodes[name].takes_part)
-        return any(sent.get(name, 0) != self._sent_before.get(name, 0) for name in (TICKS, *names))
+        names, before = self._chosen(False), self._sent_before
+        changed = (key for key, count in sent.items() if count != before.get(key, 0))
+        return any(
+            name == TICKS or name in names and (with_all or not is_kept and self._nodes[name].takes_part)
+            for name, is_kept in changed
+        )
 
     def _is_paced(self, name: str) -> bool:
         return name in self._wanted or self._paces_all and name not in self._synchronised
@@ -298,11 +304,12 @@ class PacedNodes:
             self._messages.follow(name[1:], node.rule.topic)
 
 
-def _sent_counts() -> Dict[str, int]:
+def _sent_counts(nodes: Mapping[str, FoundNode]) -> SentCounts:
     """Return the numbers of messages sent to each node, and of ticks."""
-    counts: Dict[str, int] = Counter()
+    counts: SentCounts = Counter()
     for receiver, topic, connection in outgoing():
-        counts[TICKS if topic == INSTANT_TOPIC else receiver] += message_count(connection)
+        name = TICKS if topic == INSTANT_TOPIC else receiver
+        counts[name, name in nodes and topic in nodes[name].rule.keeps] += message_count(connection)
     return counts
 
 
