@@ -1,7 +1,7 @@
 """The task of docking: states, attempts, and the reasons for which it fails."""
 
 import math
-from typing import Callable, Dict, List, Optional, Sequence, Tuple
+from typing import Callable, Dict, Iterator, List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -129,7 +129,7 @@ class Docking(RetriedTask):
         obstacles = inputs.base_in_odom.transform_points(obstacles_in_base(inputs.scan))
         dock, settings = estimate.dock_in_odom, self._settings
         poses = _staging_poses(dock, settings, BEARINGS[self._attempt % len(BEARINGS)])
-        for pose in sorted(poses, key=lambda pose: not is_approach_free(inputs, dock, pose, settings)):
+        for pose in _free_first(poses, lambda pose: is_approach_free(inputs, dock, pose, settings)):
             legs = free_legs(obstacles, inputs.base_in_odom, pose, settings.robot_radius)
             if legs is not None:
                 return pose, legs
@@ -270,6 +270,17 @@ def _staging_poses(dock: Pose2, settings: DockingSettings, bearing: float) -> Li
     """Return the staging pose at a bearing [rad], and those that may take its place, the best ones first."""
     bearings = (bearing, *FURTHER_BEARINGS)
     return [staging_pose(dock, settings, each, factor) for factor in FACTORS for each in bearings]
+
+
+def _free_first(poses: Sequence[Pose2], is_free: Callable[[Pose2], bool]) -> Iterator[Pose2]:
+    """Yield the free poses, then the others; each is only looked at when it is its turn."""
+    others = []
+    for pose in poses:
+        if is_free(pose):
+            yield pose
+        else:
+            others.append(pose)
+    yield from others
 
 
 def _is_known(estimate: DockEstimate, limits: Tuple[float, float]) -> bool:
