@@ -34,6 +34,18 @@ def test_each_request_returns_a_scene_or_a_reason():
     assert missing.startswith("/nowhere.world: cannot be read")
 
 
+def test_a_world_without_a_file_is_read_from_its_description(tmp_path):
+    file, torn = tmp_path / "world.npz", tmp_path / "torn.npz"
+    (world,) = read_scenes([(WORLD, str(HOME), "")])
+    file.write_bytes(world.to_bytes())
+    torn.write_bytes(world.to_bytes()[:1000])
+    requests = [(WORLD, str(file), ""), (WORLD, str(torn), ""), (WORLD, "/nowhere.npz", "")]
+    described, unusable, missing = read_scenes(requests)
+    assert [part.link for part in described.parts] == [part.link for part in world.parts]
+    assert unusable.startswith(f"{torn}: no description of a world")
+    assert missing.startswith("/nowhere.npz: no description of a world")
+
+
 def test_one_that_ends_the_process_leaves_the_others(monkeypatch):
     answered = []
 

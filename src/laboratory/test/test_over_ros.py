@@ -2,10 +2,12 @@
 
 import json
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 import yaml
 
+from cockpit.scene.description import SceneDescription
 from laboratory.launch_files import write_launch_files
 from laboratory.over_ros import _read_trace
 from laboratory.scenario import OFFICIAL, read_scenario
@@ -41,6 +43,8 @@ def test_faults_start_noise_and_parameters_are_written_as_files(tmp_path):
     parameters_file = yaml.safe_load(arguments["parameters_file"].read_text())
     assert parameters_file["/amcl"] == {"initial_pose_x": 0.5, "initial_pose_y": 0.1, "initial_pose_a": 0.2}
     assert parameters_file["/move_base"] == parameters
+    world = SceneDescription.from_bytes(Path(parameters_file["/cockpit/world"]).read_bytes())
+    assert {part.model for part in world.parts} >= {"home", "kitchen_table"}
     assert parameters_file["/sim_bridge"]["range_noise"] == scenario.simulation.range_noise
     assert (arguments["planner"], arguments["marker_mode"]) == ("x/Y", "service")
 

@@ -7,9 +7,11 @@ from typing import Any, Dict, Optional
 
 import yaml
 
+from cockpit.scene.description import DESCRIPTION_SUFFIX
 from laboratory.scenario.scenario import OFFICIAL, Scenario
 from planar import Pose2, SettingsError, save_map, write_atomically
 from sim_bridge.faults import Fault
+from sim_bridge.world import World
 
 
 def write_launch_files(
@@ -33,12 +35,14 @@ def write_launch_files(
     files = scenario.task.launch_files(arena, seed, folder)
     if arena.grid is None:
         raise SettingsError(f"{scenario.file}: a run over ROS needs a world with a map")
+    parameters = node_parameters(scenario, start)
+    shown = {"/cockpit/world": str(_write_description(arena.world, folder))}
     arguments: Dict[str, Any] = {
         "world_file": scenario.file.resolve(),
         "seed": seed,
         "robot": scenario.robot,
         "map_file": save_map(arena.grid, folder / "map"),
-        "parameters_file": write_yaml(folder / "parameters.yaml", node_parameters(scenario, start)),
+        "parameters_file": write_yaml(folder / "parameters.yaml", {**parameters, **shown}),
         **files,
     }
     arguments.update(_planner_arguments(scenario.planner))
@@ -50,6 +54,15 @@ def write_launch_files(
         faults = {"faults": [fault_table(fault) for fault in scenario.faults]}
         arguments["faults_file"] = write_yaml(folder / "faults.yaml", faults)
     return arguments
+
+
+def _write_description(world: World, folder: Path) -> Path:
+    """Write what the cockpit shows of a world, which has no file of its own; return the path."""
+    from cockpit.scene.reader import describe_bodies
+
+    path = folder / f"world{DESCRIPTION_SUFFIX}"
+    write_atomically(path, describe_bodies(world).to_bytes())
+    return path
 
 
 def _planner_arguments(planner: str) -> Dict[str, str]:

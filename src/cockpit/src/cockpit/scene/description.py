@@ -9,6 +9,9 @@ import numpy as np
 
 from cockpit.drawing import Colour
 
+# Suffix of a file with the bytes of a SceneDescription.
+DESCRIPTION_SUFFIX = ".npz"
+
 
 @dataclass(frozen=True, eq=False)
 class VisualPart:

@@ -14,8 +14,9 @@ from cockpit.ros.world.scene_reader import ROBOT, WORLD, SceneReader, SceneReque
 from cockpit.ros.world.spawned_models import SpawnedModelsView
 from cockpit.scene.description import SceneDescription
 
-# Parameters of sim_bridge and of Gazebo with the path of the world.
-WORLD_PARAMETERS = ("/sim_bridge/world", "/gazebo/world")
+# Parameters with the path of the world, the first one that exists counts: a description that
+# cockpit.scene.reader has made of a world without a file, and the files of sim_bridge and of Gazebo.
+WORLD_PARAMETERS = ("/cockpit/world", "/sim_bridge/world", "/gazebo/world")
 DESCRIPTION, PREFIX = "robot_description", "tf_prefix"
 # The frame of a world file; a map made or rendered of that world coincides with it.
 WORLD_FRAME, MAP_FRAME = "world", "map"
@@ -52,7 +53,7 @@ class WorldTracker:
             CockpitError: The ROS master does not answer.
         """
         names = self._graph.parameter_names()
-        worlds = [(WORLD, name, self._show_world) for name in WORLD_PARAMETERS if name in names]
+        worlds = [(WORLD, name, self._show_world) for name in WORLD_PARAMETERS if name in names][:1]
         robots = [
             (ROBOT, name, partial(self._show_robot, name))
             for name in names
