@@ -27,6 +27,8 @@ ROOT = Path(__file__).resolve().parents[2]
 # Wall-clock time for a request, on a busy machine [s].
 PATIENCE = 200.0
 HOUR, MINUTE = 3600.0, 60.0
+# Simulated time that has been skipped when the robot counts as idle again [s].
+IDLE = 10.0 * MINUTE
 # Steps that are taken in each simulated second while none are skipped.
 STEPS = 50
 
@@ -57,15 +59,15 @@ class IdleTimeTest(unittest.TestCase):
         cls.steps.append((message.header.stamp.to_sec(), pose2_from_msg(message.pose.pose)))
 
     def test_idle_time(self):
-        self.requests_hours_apart_are_done_in_time()
+        self.requests_an_hour_apart_are_done_in_time()
         self.a_request_that_comes_meanwhile_is_done()
         self.no_step_is_skipped_while_another_node_listens()
         self.no_step_is_skipped_while_a_fault_is_active()
 
-    def requests_hours_apart_are_done_in_time(self):
+    def requests_an_hour_apart_are_done_in_time(self):
         now = self.now()
-        self.submit("early", "deliver cup from pickup to dropoff", now + 2.0 * HOUR)
-        self.submit("late", "go pickup", now + 5.0 * HOUR)
+        self.submit("early", "deliver cup from pickup to dropoff", now + 0.5 * HOUR)
+        self.submit("late", "go pickup", now + 1.5 * HOUR)
         begin = len(self.steps)
         late = self.end_of("late")
         for task in (self.end_of("early"), late):
@@ -82,7 +84,7 @@ class IdleTimeTest(unittest.TestCase):
 
     def a_request_that_comes_meanwhile_is_done(self):
         skipped = self.skipped
-        wait_until("idle time", lambda: self.skipped > skipped + HOUR, PATIENCE)
+        wait_until("idle time", lambda: self.skipped > skipped + IDLE, PATIENCE)
         command = [str(ROOT / "scripts" / "request.sh"), "--state", str(self.folder), "go dropoff", "--wait"]
         done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
@@ -90,7 +92,7 @@ class IdleTimeTest(unittest.TestCase):
 
     def no_step_is_skipped_while_another_node_listens(self):
         skipped = self.skipped
-        wait_until("idle time", lambda: self.skipped > skipped + HOUR, PATIENCE)
+        wait_until("idle time", lambda: self.skipped > skipped + IDLE, PATIENCE)
         command = ["rostopic", "echo", "-p", "/odom/header/stamp"]
         _, environment = marked_environment()
         listener = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment)
@@ -101,12 +103,12 @@ class IdleTimeTest(unittest.TestCase):
         gaps = [1e-9 * (after - before) for before, after in zip(stamps, stamps[1:])]
         self.assertLess(max(gaps), 1.5 / STEPS)
         skipped = self.skipped
-        wait_until("idle time", lambda: self.skipped > skipped + HOUR, PATIENCE)
+        wait_until("idle time", lambda: self.skipped > skipped + IDLE, PATIENCE)
 
     def no_step_is_skipped_while_a_fault_is_active(self):
         begin, skipped = len(self.steps), self.skipped
         self.assertTrue(rospy.ServiceProxy("sim_bridge/add_fault", AddFault)("scan_noisy", 30.0, 0.0).success)
-        wait_until("idle time", lambda: self.skipped > skipped + HOUR, PATIENCE)
+        wait_until("idle time", lambda: self.skipped > skipped + IDLE, PATIENCE)
         stamps = [stamp for stamp, _ in self.steps[begin:]]
         gaps = [0, *(n for n in range(1, len(stamps)) if stamps[n] - stamps[n - 1] > 1.5 / STEPS)]
         self.assertGreaterEqual(max(after - before for before, after in zip(gaps, gaps[1:])), 30 * STEPS)
