@@ -1,7 +1,6 @@
 """Unsynchronised nodes, such as the official amcl and move_base, beside which time passes by rules."""
 
 import time
-from collections import Counter
 from enum import Enum
 from typing import Callable, Dict, FrozenSet, List, Mapping, Set, Tuple
 
@@ -19,6 +18,7 @@ from sim_bridge.rest.barrier import (
     RestBarrier,
 )
 from sim_bridge.rest.rules import PaceRule
+from sim_bridge.rest.sent_messages import TICKS, SentCounts, are_any_woken, sent_counts
 from sim_bridge.rest.threads import ProcessThreads
 from sim_bridge.ros.call_queue import CallQueue
 from sim_bridge.ros.timing.connection_monitor import CONNECT_SECONDS
@@ -31,12 +31,8 @@ PACE_TOPIC = "/simulation/pace"
 SYNCHRONISED = "synchronised nodes"
 # The same for messages of the simulation that have not arrived yet.
 MESSAGES = "messages"
-# The same for ticks of the synchronised nodes.
-TICKS = "ticks"
 # Time without a new topic or service after which nodes have started [simulated s].
 SETTLING_SECONDS = 2.0
-# Numbers of messages sent, by receiver and whether it keeps them.
-SentCounts = Dict[Tuple[str, bool], int]
 
 
 class Before(Enum):
@@ -159,7 +155,7 @@ class PacedNodes:
         if is_settling and before is Before.CLOCK and not self._are_connected():
             return False
         if not self._barrier.is_begun:
-            sent = _sent_counts(self._nodes)
+            sent = _sent(self._nodes)
             must_look = is_settling or has_news or before in (Before.SENSORS, Before.TICK)
             if not must_look and not self._are_woken(sent, before is Before.CLOCK or is_clock_sent):
                 return True
@@ -218,21 +214,8 @@ class PacedNodes:
         return {name for name, kind in kinds.items() if kind == "rest" and self._is_paced(name)}
 
     def _are_woken(self, sent: SentCounts, with_all: bool) -> bool:
-        """Return whether something has been sent since all nodes rested that may have one of them work.
-
-        What a node does whose messages no other one receives, or with messages that it keeps, matters when
-        the clock is sent only.
-
-        Args:
-            sent: Numbers of messages sent.
-            with_all: Whether all nodes and messages matter.
-        """
-        names, before = self._chosen(False), self._sent_before
-        changed = (key for key, count in sent.items() if count != before.get(key, 0))
-        return any(
-            name == TICKS or name in names and (with_all or not is_kept and self._nodes[name].takes_part)
-            for name, is_kept in changed
-        )
+        takes_part = {name: self._nodes[name].takes_part for name in self._chosen(False)}
+        return are_any_woken(sent, self._sent_before, takes_part, with_all)
 
     def _is_paced(self, name: str) -> bool:
         return name in self._wanted or self._paces_all and name not in self._synchronised
@@ -304,13 +287,13 @@ class PacedNodes:
             self._messages.follow(name[1:], node.rule.topic)
 
 
-def _sent_counts(nodes: Mapping[str, FoundNode]) -> SentCounts:
+def _sent(nodes: Mapping[str, FoundNode]) -> SentCounts:
     """Return the numbers of messages sent to each node, and of ticks."""
-    counts: SentCounts = Counter()
-    for receiver, topic, connection in outgoing():
-        name = TICKS if topic == INSTANT_TOPIC else receiver
-        counts[name, name in nodes and topic in nodes[name].rule.keeps] += message_count(connection)
-    return counts
+    rows = (
+        (TICKS if topic == INSTANT_TOPIC else receiver, topic, message_count(connection))
+        for receiver, topic, connection in outgoing()
+    )
+    return sent_counts(rows, {name: node.rule.keeps for name, node in nodes.items()})
 
 
 def _quiet(is_graph_new: bool, before: Before, is_clock_sent: bool) -> float:
