@@ -59,7 +59,9 @@ def test_faults_also_apply_without_a_map():
     rates = SimulationSettings(odometry_rate=100, scan_rate=20)
     task = OdomGoalTask(Pose2(1.0, 0.0), 0.1)
     carried = Fault("kidnapped", 0.5, strength=0.4)
-    ahead = replace(home, world=source, robot="jackal", simulation=rates, task=task, faults=(carried,), seconds=3.0)
+    ahead = replace(
+        home, world=source, robot="jackal", simulation=rates, task=task, faults=(carried,), seconds=3.0
+    )
     run = ahead.task.run(ahead, ahead.arena(5), 5)
     assert np.hypot(*np.diff(run.trajectory[:, 1:3], axis=0).T).max() > 0.3
 
