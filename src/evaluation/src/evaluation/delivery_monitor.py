@@ -4,7 +4,7 @@ from typing import Callable, Dict, List, Mapping, NamedTuple, Optional, Tuple
 
 from evaluation.verdict import ARRIVAL_TOLERANCE, TRUE_PLACE, DeliveryRecord
 from pick_objects import Delivery, DeliveryStage
-from pick_objects.search.area import REACH
+from pick_objects.mission import REACH
 from planar import Pose2
 from planar.maps.places import NamedPlace
 

@@ -10,6 +10,7 @@ from planar.errors import SettingsError
 from planar.geometry.pose import pose_of_text
 from planar.maps.home_folder import HomeFolder, load_home
 from planar.maps.places import load_places
+from sim_bridge.config import is_robot_file
 from supervision.command_line import number, option, seconds, seed
 from supervision.view_options import ViewOptions
 
@@ -24,9 +25,7 @@ RESULT_OPTIONS = ("seed", "world", "robot", "map", "mission")
 
 def robot_name(text: str) -> str:
     """Return the name of a robot, or the absolute path of its file, which is read by other processes."""
-    from sim_bridge.robots import FILE_SUFFIXES  # late: imports much of the simulator
-
-    is_relative = text.endswith(FILE_SUFFIXES) and not text.startswith("~")
+    is_relative = is_robot_file(text) and not text.startswith("~")
     return str(Path(text).absolute()) if is_relative else text
 
 

@@ -10,6 +10,8 @@ from planar.maps.places import NamedPlace
 from planar.maps.semantic_map import SemanticMap
 
 ORANGE = (0.9, 0.4, 0.1)
+# Farthest from an object that the robot can pick it up [m].
+REACH = 1.5
 
 
 class MissionError(PlanarError):

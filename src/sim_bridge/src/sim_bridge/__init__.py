@@ -1,9 +1,9 @@
 """A headless simulator of wheeled robots in SDF worlds. Only ``sim_bridge.ros`` uses ROS."""
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from planar.deprecation import deprecated_names
+from planar.lazy_names import lazy_names
 
 if TYPE_CHECKING:
     from sim_bridge.config import SimulationSettings
@@ -31,26 +31,17 @@ __all__ = [
     "robot_named",
 ]
 
-_MODULES = {
-    "config": ("SimulationSettings",),
-    "episode": ("Episode", "EpisodeHooks"),
-    "errors": ("RobotError", "WorldError"),
-    "robot": ("RobotWrappers", "StepResult"),
-    "robots": ("ROBOTS", "RobotProfile", "robot_named"),
-    "scene": ("Scene",),
-    "sdf": ("load_world",),
-    "simulation": ("Simulation",),
-}
-_MODULE_OF = {name: module for module, names in _MODULES.items() for name in names}
-_deprecated = deprecated_names(__name__, {"Fitting": "RobotWrappers", "Observation": "StepResult"})
-
-
-def __getattr__(name: str) -> Any:
-    """Import a public name when it is first used: a robot's profile alone does not load the simulator.
-
-    Raises:
-        AttributeError: There is no such name.
-    """
-    if name not in _MODULE_OF:
-        return _deprecated(name)
-    return getattr(import_module(f"{__name__}.{_MODULE_OF[name]}"), name)
+__getattr__ = lazy_names(
+    __name__,
+    {
+        "sim_bridge.config": ("SimulationSettings",),
+        "sim_bridge.episode": ("Episode", "EpisodeHooks"),
+        "sim_bridge.errors": ("RobotError", "WorldError"),
+        "sim_bridge.robot": ("RobotWrappers", "StepResult"),
+        "sim_bridge.robots": ("ROBOTS", "RobotProfile", "robot_named"),
+        "sim_bridge.scene": ("Scene",),
+        "sim_bridge.sdf": ("load_world",),
+        "sim_bridge.simulation": ("Simulation",),
+    },
+    deprecated_names(__name__, {"Fitting": "RobotWrappers", "Observation": "StepResult"}),
+)

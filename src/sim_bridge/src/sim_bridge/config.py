@@ -13,8 +13,15 @@ from sim_bridge.rest.rules import FORMS, parse_rules
 
 # With more, a single period of the odometry would take seconds [Hz].
 MAX_PHYSICS_RATE = 100_000
+# A robot whose name has one of these suffixes is that of a file.
+FILE_SUFFIXES = (".urdf", ".xacro", ".xml")
 # One control period, so that simulation and control run in parallel [s].
 LATENCY = 0.1
+
+
+def is_robot_file(name: str) -> bool:
+    """Return whether the name of a robot is the path of a file."""
+    return name.endswith(FILE_SUFFIXES)
 
 
 @dataclass(frozen=True)

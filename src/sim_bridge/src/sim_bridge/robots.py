@@ -1,22 +1,23 @@
 """The built-in robots, and your own robot from a URDF or xacro file (docs/get_started/own_robot.md)."""
 
 import xml.etree.ElementTree as ElementTree
+from functools import lru_cache
 from pathlib import Path
-from typing import Dict, Tuple
+from typing import Dict, Iterator, Mapping, Tuple
 
 from planar.config.hints import hint
+from sim_bridge.config import is_robot_file
 from sim_bridge.description import RobotProfile, read_robot_file, read_urdf_robot
 from sim_bridge.description.urdf import FindFile, no_file
 from sim_bridge.errors import RobotError
 
 _URDF_FOLDER = Path(__file__).parent / "urdf"
-# A name with one of these suffixes is the path of a file.
-FILE_SUFFIXES = (".urdf", ".xacro", ".xml")
 
 
-def _profile(name: str, *files: str) -> RobotProfile:
+@lru_cache(maxsize=None)
+def _profile(name: str) -> RobotProfile:
     """Return a robot of several URDF files: the first one with the elements of the others added."""
-    first, *others = (ElementTree.parse(str(_URDF_FOLDER / file)).getroot() for file in files)
+    first, *others = (ElementTree.parse(str(_URDF_FOLDER / file)).getroot() for file in _FILES[name])
     for other in others:
         first.extend(other)
     first.set("name", name)
@@ -31,7 +32,21 @@ _FILES: Dict[str, Tuple[str, ...]] = {
     "jackal": ("jackal.urdf",),
 }
 
-ROBOTS: Dict[str, RobotProfile] = {name: _profile(name, *files) for name, files in _FILES.items()}
+
+class _BuiltInRobots(Mapping[str, RobotProfile]):
+    """The built-in robots by name; each is read when it is first used."""
+
+    def __getitem__(self, name: str) -> RobotProfile:
+        return _profile(name)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(_FILES)
+
+    def __len__(self) -> int:
+        return len(_FILES)
+
+
+ROBOTS = _BuiltInRobots()
 
 
 def robot_named(name: str, find_file: FindFile = no_file) -> RobotProfile:
@@ -46,7 +61,7 @@ def robot_named(name: str, find_file: FindFile = no_file) -> RobotProfile:
     """
     if name in ROBOTS:
         return ROBOTS[name]
-    if name.endswith(FILE_SUFFIXES):
+    if is_robot_file(name):
         try:
             path = Path(name).expanduser()
         except RuntimeError as error:

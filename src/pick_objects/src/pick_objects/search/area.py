@@ -6,6 +6,7 @@ from typing import Dict, List, Optional, Tuple
 
 import numpy as np
 
+from pick_objects.mission import REACH
 from planar import FREE, OCCUPIED, OccupancyGrid, Pose2, SettingsError
 from planar.detection import DetectionModel
 from planar.geometry.distance_field import distance_field
@@ -19,8 +20,6 @@ STANDING_CLEARANCE, SPACING = 0.4, 0.4
 HEADINGS, MAX_VIEWS = 12, 80
 # Share of the tops that a further view must show to be kept.
 MIN_VIEW_GAIN = 2e-3
-# Farthest from an object that the robot can pick it up [m].
-REACH = 1.5
 # Mean speed of drives [m/s], and time to start, turn, stop and look [s].
 SPEED, STOP_SECONDS = 0.3, 5.0
 

@@ -5,8 +5,6 @@ import importlib
 import sys
 from typing import Any, List
 
-from threadpoolctl import threadpool_limits
-
 from supervision.fork_client import run_in_fork_server
 from supervision.interruption import exiting_on_signals
 
@@ -34,6 +32,8 @@ def call(function: str, *arguments: object) -> Any:
 
 def use_one_blas_thread() -> None:
     """Limit BLAS to one thread: the matrices are small, and further threads would only spin."""
+    from threadpoolctl import threadpool_limits  # late: a client of the fork server needs nothing of it
+
     threadpool_limits(1, user_api="blas")
 
 
