@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from evaluation.options import ROOT
+from evaluation.options import ROOT, GraphOptions
 from headless_mission.inputs import read_home
 from home_service import commands
-from home_service.cli import main
+from home_service.cli import GRAPH_COMMANDS, main
 from home_service.commands.test_navigation import goal_list
 from sim_bridge import ROBOTS
 from supervision.cli import parse
@@ -22,6 +22,19 @@ from supervision.view_options import speed_factor
 def without_preloaded_processes(monkeypatch):
     """Commands of these tests start no nodes; each would leave a process that compiles for some seconds."""
     monkeypatch.setattr("home_service.cli.preload_nodes", lambda: None)
+
+
+def test_the_nodes_of_all_commands_with_a_graph_are_imported_early():
+    starting = {
+        name for name in commands.FOLDER.names() if issubclass(commands.FOLDER.find(name), GraphOptions)
+    }
+    assert starting == GRAPH_COMMANDS
+
+
+def test_help_imports_no_nodes(monkeypatch):
+    monkeypatch.setattr("home_service.cli.preload_nodes", lambda: pytest.fail("was called"))
+    with pytest.raises(SystemExit):
+        main(["home_service", "--seed", "1", "--help"])
 
 
 def test_goals_are_read_from_a_line():

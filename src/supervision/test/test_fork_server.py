@@ -103,6 +103,33 @@ def test_without_a_server_the_program_runs_in_its_own_process(modules, name):
     assert start(name, "program:draw").communicate(timeout=SECONDS)[0] == "alone\n"
 
 
+def test_a_program_that_is_imported_by_the_way_does_not_wait_for_all_that_is_prepared(
+    modules, tmp_path, monkeypatch
+):
+    """As the description of the robot, which roslaunch needs before it starts the first node."""
+    waiting = "import pathlib, time\nwhile not pathlib.Path({!r}).exists(): time.sleep(0.01)\n"
+    (tmp_path / "node.py").write_text("import program\ndef report(): program.report('node')\n")
+    for name in ("first", "second"):
+        (tmp_path / f"{name}.py").write_text(waiting.format(f"{name}_goes_on"))
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv(FORK_SERVER, "")
+    server = start_fork_server(["node", "first", "second"])
+    address = os.environ[FORK_SERVER]
+    try:
+        wait_until(lambda: is_there(address))
+        node, program = start(address, "node:report"), start(address, "program:report", "program")
+        time.sleep(1.0)  # until both wait for the server
+        assert (node.poll(), program.poll()) == (None, None)
+        (tmp_path / "first_goes_on").touch()
+        assert program.communicate("", timeout=SECONDS)[0] == f"forked program word {tmp_path} \n"
+        assert node.poll() is None
+        (tmp_path / "second_goes_on").touch()
+        assert node.communicate("", timeout=SECONDS)[0] == f"forked node word {tmp_path} \n"
+    finally:
+        server.kill()
+        server.wait()
+
+
 def test_a_server_that_dies_before_the_answer_counts_as_absent(modules):
     with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as listener:
         listener.bind("\0dying_server")

@@ -1,12 +1,19 @@
 """Entry point of the commands behind the scripts."""
 
-from typing import List, Optional
+import sys
+from typing import TYPE_CHECKING, List, Optional
 
-from evaluation.options import GraphOptions
 from evaluation.preload import preload_nodes
-from home_service import commands
-from supervision import cli
-from supervision.command import Command
+from supervision.interruption import exit_when_interrupted
+
+if TYPE_CHECKING:
+    from supervision.command import Command
+
+# Commands that start the nodes of a graph, whose imports then begin before those of the command itself.
+GRAPH_COMMANDS = frozenset(
+    "add_marker follow home_service launch map_home pick_objects test_navigation test_slam".split()
+)
+HELP = frozenset(("-h", "--help"))
 
 
 def main(arguments: Optional[List[str]] = None) -> int:
@@ -18,9 +25,24 @@ def main(arguments: Optional[List[str]] = None) -> int:
     Returns:
         Exit code: 0 success, 1 failure, 2 bad input, 130 interrupted.
     """
-    return cli.main(commands.FOLDER, arguments, _prepare)
+    words = sys.argv[1:] if arguments is None else arguments
+    exit_when_interrupted()
+    is_early = bool(GRAPH_COMMANDS.intersection(words[:1])) and not HELP.intersection(words)
+    if is_early:
+        preload_nodes()
+    from home_service import commands  # late: their imports take as long as those of some nodes
+    from supervision import cli
+
+    return cli.main(commands.FOLDER, words, _keep if is_early else _prepare)
 
 
-def _prepare(command: Command) -> None:
+def _keep(command: "Command") -> None:
+    """The nodes are being imported already."""
+
+
+def _prepare(command: "Command") -> None:
+    """Import the nodes for a custom command that starts a graph."""
+    from evaluation.options import GraphOptions
+
     if isinstance(command, GraphOptions):
         preload_nodes()

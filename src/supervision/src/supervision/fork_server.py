@@ -3,8 +3,9 @@
 python3 -m supervision.fork_server NAME (MODULE | MODULE:FUNCTION)...
 
 Imports take most of a node's start-up time: here they are made once, while roslaunch still reads the launch
-files. The server listens at the abstract Unix socket NAME, for processes of the same user only; clients that
-connect during the imports wait. It ends with the process that has started it.
+files. The server listens at the abstract Unix socket NAME, for processes of the same user only. A client that
+connects during the imports waits for all of them if it calls a function of one of the modules, and for its
+own module only if it is another program. The server ends with the process that has started it.
 """
 
 import array
@@ -23,7 +24,7 @@ import subprocess
 import sys
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, Dict, List, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
 
 from supervision.fork_client import ANSWER_SECONDS, FORK_SERVER, LARGEST_MESSAGE, STREAMS, user_of_peer
 from supervision.interruption import before_exit
@@ -33,6 +34,8 @@ WAITING_CLIENTS = 64
 REQUEST_SECONDS = 1.0
 # Defined by Linux, not by the module fcntl.
 F_SETSIG = 10
+# Request of a client, and the connection to it.
+_Client = Tuple[Dict[str, Any], socket.socket]
 
 
 def start_fork_server(preparations: Sequence[str]) -> "subprocess.Popen[bytes]":
@@ -66,12 +69,9 @@ def main() -> None:
         listener.bind(f"\0{name}")
         listener.listen(WAITING_CLIENTS)
         gc.disable()  # nearly all objects stay alive
-        for preparation in preparations:
-            with suppress(Exception):  # the node that needs it fails and reports the error
-                _call(preparation)
-        gc.freeze()  # so that children share unchanged memory
-        gc.enable()
-        request, connection = _ForkServer(listener).serve()
+        request, connection = _ForkServer(listener).serve(preparations)
+    gc.freeze()  # so that this child shares the server's memory
+    gc.enable()
     _take_over_client(request, connection)
     _call(*request["call"])
 
@@ -90,70 +90,110 @@ class _ForkServer:
     def __init__(self, listener: socket.socket):
         self._listener = listener
         self._clients: Dict[int, socket.socket] = {}
-        self._awake, self._awakened = os.pipe2(os.O_NONBLOCK | os.O_CLOEXEC)
-        signal.signal(signal.SIGCHLD, lambda _number, _frame: None)
-        signal.set_wakeup_fd(self._awakened, warn_on_full_buffer=False)
+        self._waiting: List[_Client] = []
+        # Also while modules are imported, so that no client waits for them at its end.
+        signal.signal(signal.SIGCHLD, lambda _number, _frame: self._report_exits())
 
-    def serve(self) -> Tuple[Dict[str, Any], socket.socket]:
-        """Serve for ever; returns in each child the request and the connection to its client."""
+    def serve(self, preparations: Sequence[str]) -> _Client:
+        """Prepare, and serve for ever; returns in each child the request and the connection to its client."""
+        prepared = {preparation.partition(":")[0] for preparation in preparations}
+        for preparation in preparations:
+            with suppress(Exception):  # the node that needs it fails and reports the error
+                _call(preparation)
+            while select.select([self._listener], [], [], 0.0)[0]:
+                self._receive()
+            child = self._start_clients(lambda module: module in sys.modules and module not in prepared)
+            if child is not None:
+                return child
+        gc.freeze()  # so that children share unchanged memory
         while True:
-            ready, _, _ = select.select([self._listener, self._awake], [], [])
-            if self._awake in ready:
-                with suppress(BlockingIOError):
-                    os.read(self._awake, LARGEST_MESSAGE)
-                self._report_exits()
-            if self._listener in ready:
-                connection, _ = self._listener.accept()
-                request = _received(connection)
-                if request is None:
-                    connection.close()
-                elif self._is_child(connection, request.pop("streams")):
-                    return request, connection
+            child = self._start_clients(lambda _module: True)
+            if child is not None:
+                return child
+            self._receive()
+
+    def _receive(self) -> None:
+        """Receive the request of the next client."""
+        connection, _ = self._listener.accept()
+        request = _received(connection)
+        if request is None:
+            connection.close()
+        else:
+            self._waiting.append((request, connection))
+
+    def _start_clients(self, may_start: Callable[[str], bool]) -> Optional[_Client]:
+        """Fork for the waiting clients whose modules may start; return the client in its child."""
+        waiting, self._waiting = self._waiting, []
+        for number, (request, connection) in enumerate(waiting):
+            if not may_start(_module_of(request)):
+                self._waiting.append((request, connection))
+            elif self._is_child(connection, request["streams"]):
+                for other in (*self._waiting, *waiting[number + 1 :]):
+                    _close(*other)
+                return request, connection
+        return None
 
     def _is_child(self, connection: socket.socket, streams: List[int]) -> bool:
         child = os.fork()
         if child:
-            self._clients[child] = connection
-            for stream in streams:
-                os.close(stream)
+            _close_all(streams)
             with suppress(OSError):
                 connection.send(str(child).encode())
+            self._clients[child] = connection
+            self._report_exits()  # it may have ended before it was among the clients
             return False
         for ours, theirs in zip(STREAMS, streams):
             os.dup2(theirs, ours)
             os.close(theirs)
-        signal.set_wakeup_fd(-1)
         signal.signal(signal.SIGCHLD, signal.SIG_DFL)
-        for descriptor in (self._awake, self._awakened):
-            os.close(descriptor)
         for client in self._clients.values():
             client.close()
         return True
 
     def _report_exits(self) -> None:
-        with suppress(ChildProcessError):
-            while True:
-                child, status = os.waitpid(-1, os.WNOHANG)
-                if not child:
-                    return
-                code = -os.WTERMSIG(status) if os.WIFSIGNALED(status) else os.WEXITSTATUS(status)
-                with self._clients.pop(child) as client, suppress(OSError):
-                    client.send(str(code).encode())
+        """Report the exit codes of children that have ended; a signal may call it while it runs."""
+        for child in list(self._clients):
+            with suppress(ChildProcessError):  # reported meanwhile
+                ended, status = os.waitpid(child, os.WNOHANG)
+                if ended:
+                    code = -os.WTERMSIG(status) if os.WIFSIGNALED(status) else os.WEXITSTATUS(status)
+                    with self._clients.pop(child) as client, suppress(OSError):
+                        client.send(str(code).encode())
 
 
 def _received(connection: socket.socket) -> Optional[Dict[str, Any]]:
-    """Return the request of a client of the same user with its ``streams``; None if it is not valid."""
+    """Return the request of a client of the same user, with its ``streams``; None if it is not valid."""
     if user_of_peer(connection) != os.getuid():
         return None
     connection.settimeout(REQUEST_SECONDS)
     streams = array.array("i")
-    with suppress(OSError, ValueError, TypeError):
+    with suppress(OSError, ValueError, TypeError, LookupError):
         size = socket.CMSG_LEN(len(STREAMS) * streams.itemsize)
         text, rights, _, _ = connection.recvmsg(LARGEST_MESSAGE, size)
         for _level, _kind, data in rights:
             streams.frombytes(data)
-        return {**json.loads(text), "streams": list(streams)}
+        request = {**json.loads(text), "streams": list(streams)}
+        if ":" in request["call"][0]:
+            return request
+    _close_all(streams)
     return None
+
+
+def _module_of(request: Dict[str, Any]) -> str:
+    """Return the module of the last function in a call, which those before only prepare for."""
+    functions = [word for word in request["call"] if ":" in word]
+    return str(functions[-1]).partition(":")[0]
+
+
+def _close(request: Dict[str, Any], connection: socket.socket) -> None:
+    """Close what belongs to another client, in a child."""
+    _close_all(request["streams"])
+    connection.close()
+
+
+def _close_all(streams: Sequence[int]) -> None:
+    for stream in streams:
+        os.close(stream)
 
 
 def _take_over_client(request: Dict[str, Any], connection: socket.socket) -> None:
