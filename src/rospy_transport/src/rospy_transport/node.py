@@ -9,6 +9,7 @@ import rospy.core
 import rospy.names
 import rospy.rostime
 from rospy.impl.paramserver import get_param_server_cache
+from rospy.impl.registration import RegManager, get_registration_listeners
 
 # Interval at which a shutdown is detected.
 LONGEST_WAIT_SECONDS = 0.2
@@ -40,6 +41,21 @@ def on_unregistered(hook: Callable[[], None]) -> None:
         hook: The function; register it after ``rospy.init_node``.
     """
     rospy.core.add_shutdown_hook(lambda _reason: hook())
+
+
+def end_registration_at_shutdown() -> None:
+    """Have the thread that registers topics end with the node; call it after ``rospy.init_node``.
+
+    rospy waits for it at shutdown, but it looks for the shutdown each half second only.
+    """
+    managers = [each for each in get_registration_listeners().listeners if isinstance(each, RegManager)]
+
+    def wake(_reason: str) -> None:
+        for manager in managers:
+            with manager.cond:
+                manager.cond.notify_all()
+
+    rospy.core.add_shutdown_hook(wake)
 
 
 def cache_parameter(name: str, value: Any) -> None:

@@ -13,7 +13,7 @@ from rosgraph import get_master_uri
 
 from planar import PlanarError
 from planar_ros.node.entry import use_one_blas_thread
-from rospy_transport.node import cache_parameter, on_unregistered
+from rospy_transport.node import cache_parameter, end_registration_at_shutdown, on_unregistered
 from rospy_transport.replacements import install
 from supervision.interruption import on_signals
 from supervision.streams import ignore_write_errors
@@ -83,6 +83,7 @@ def init_node(name: str, **options: Any) -> None:
     """
     install()
     rospy.init_node(name, **{"disable_signals": True, **options})
+    end_registration_at_shutdown()
     cache_parameter(LOG_WITHOUT_TOPICS, rospy.get_param(LOG_WITHOUT_TOPICS, False))
 
 
