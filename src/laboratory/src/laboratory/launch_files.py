@@ -57,7 +57,7 @@ def write_launch_files(
 
 
 def _write_description(world: World, folder: Path) -> Path:
-    """Write what the cockpit shows of a world, which has no file of its own; return the path."""
+    """Write what the cockpit shows of a generated world; return the path."""
     from cockpit.scene.reader import describe_bodies
 
     path = folder / f"world{DESCRIPTION_SUFFIX}"
