@@ -9,6 +9,7 @@ import pytest
 import rospy
 import rospy.names
 from rospy.impl import rosout
+from rospy.impl.registration import RegManager, get_registration_listeners
 
 from rospy_transport import node
 
@@ -32,6 +33,28 @@ node.on_topics_closed(lambda: report("on_topics_closed"))
 node.on_unregistered(lambda: report("on_unregistered"))
 rospy.signal_shutdown("test")
 """
+
+
+def test_the_registration_thread_ends_at_once_at_a_shutdown(monkeypatch):
+    """It would look for the shutdown half a second later."""
+    manager = RegManager(None)
+    monkeypatch.setattr(get_registration_listeners(), "listeners", [manager])
+    hooks = []
+    monkeypatch.setattr(node.rospy.core, "add_shutdown_hook", hooks.append)
+    node.end_registration_at_shutdown()
+    is_waiting, is_woken = threading.Event(), threading.Event()
+
+    def wait():
+        with manager.cond:
+            is_waiting.set()
+            if manager.cond.wait(30.0):
+                is_woken.set()
+
+    threading.Thread(target=wait, daemon=True).start()
+    assert is_waiting.wait(10.0)
+    (wake,) = hooks
+    wake("test")
+    assert is_woken.wait(10.0)
 
 
 def test_the_hooks_of_a_shutdown_are_called_in_order():
