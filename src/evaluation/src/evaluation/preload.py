@@ -1,5 +1,7 @@
 """Preloaded process (forkserver) of which the nodes of a graph are forked: imports and numba kernels."""
 
+from functools import lru_cache
+
 from supervision.fork_server import start_fork_server
 
 NODES = (
@@ -12,8 +14,9 @@ NODES = (
 )
 
 
+@lru_cache(maxsize=None)
 def preload_nodes() -> None:
-    """Start the preloaded process; nodes started later are forked of it."""
+    """Start the preloaded process, unless it was started before; nodes started later are forked of it."""
     start_fork_server([*NODES, "sim_bridge.views.section:warm_up", f"{__name__}:load_kernels"])
 
 

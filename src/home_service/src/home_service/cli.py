@@ -27,17 +27,12 @@ def main(arguments: Optional[List[str]] = None) -> int:
     """
     words = sys.argv[1:] if arguments is None else arguments
     exit_when_interrupted()
-    is_early = bool(GRAPH_COMMANDS.intersection(words[:1])) and not HELP.intersection(words)
-    if is_early:
+    if GRAPH_COMMANDS.intersection(words[:1]) and not HELP.intersection(words):
         preload_nodes()
     from home_service import commands  # late: their imports take as long as those of some nodes
     from supervision import cli
 
-    return cli.main(commands.FOLDER, words, _keep if is_early else _prepare)
-
-
-def _keep(command: "Command") -> None:
-    """The nodes are being imported already."""
+    return cli.main(commands.FOLDER, words, _prepare)
 
 
 def _prepare(command: "Command") -> None:
