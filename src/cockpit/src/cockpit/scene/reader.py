@@ -7,12 +7,15 @@ they do not stay in the cockpit's memory and a malformed mesh cannot crash the c
 import math
 from pathlib import Path
 from typing import Dict, Iterator, List, Optional, Sequence, Tuple
+from zipfile import BadZipFile
 
 import numpy as np
 
 from cockpit.drawing import Colour
-from cockpit.scene.description import DisplayJoint, SceneDescription, VisualPart
+from cockpit.errors import CockpitError
+from cockpit.scene.description import DESCRIPTION_SUFFIX, DisplayJoint, SceneDescription, VisualPart
 from planar import PlanarError
+from planar.files.reading import read_bytes
 from sim_bridge import load_world
 from sim_bridge.description import read_prop
 from sim_bridge.description.urdf import FindFile
@@ -31,16 +34,25 @@ FREELY, BEYOND = {"revolute": math.pi / 2.0, "prismatic": 0.5}, 1000.0
 
 
 def describe_world(path: Path, folders: Sequence[Path]) -> SceneDescription:
-    """Describe the bodies of an SDF file.
+    """Describe the bodies of an SDF file, or read their description.
 
     Args:
-        path: The file.
+        path: The file; with DESCRIPTION_SUFFIX it holds the bytes of a description.
         folders: Folders that are searched for ``model://`` URIs.
 
     Raises:
         PlanarError: The file cannot be used.
     """
+    if path.suffix == DESCRIPTION_SUFFIX:
+        return _read_description(path)
     return describe_bodies(load_world(path, folders))
+
+
+def _read_description(path: Path) -> SceneDescription:
+    try:
+        return SceneDescription.from_bytes(read_bytes(path))
+    except (OSError, ValueError, LookupError, BadZipFile) as error:
+        raise CockpitError(f"{path}: no description of a world ({error})") from None
 
 
 def describe_model(text: str, name: str, folders: Sequence[Path], find_file: FindFile) -> SceneDescription:

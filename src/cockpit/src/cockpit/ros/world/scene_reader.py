@@ -5,17 +5,16 @@ import threading
 from pathlib import Path
 from subprocess import PIPE, Popen, TimeoutExpired
 from typing import Callable, List, Optional, Sequence, Tuple, Union
-from zipfile import BadZipFile
 
 import msgspec.msgpack
 
-from cockpit.scene.description import DESCRIPTION_SUFFIX, SceneDescription
+from cockpit.scene.description import SceneDescription
 
 READING_SECONDS = 120.0
 # The graph has priority on a busy machine, but reading must not starve.
 NICENESS = "5"
 WORLD, ROBOT, MODEL = "world", "robot", "model"
-# (WORLD, SDF file or DESCRIPTION file, ""), (ROBOT, parameter, URDF) or (MODEL, name, SDF or URDF).
+# (WORLD, SDF file or description, ""), (ROBOT, parameter, URDF) or (MODEL, name, SDF or URDF).
 SceneRequest = Tuple[str, str, str]
 # The description, or the reason why it could not be read.
 SceneResult = Union[SceneDescription, str]
@@ -99,8 +98,6 @@ def _reading() -> Callable[[str, str, str], Union[bytes, str]]:
 
     def read(kind: str, name: str, text: str) -> Union[bytes, str]:
         try:
-            if kind == WORLD and name.endswith(DESCRIPTION_SUFFIX):
-                return _read_description(name)
             if kind == WORLD:
                 look = describe_world(Path(name), model_folders())
             elif kind == ROBOT:
@@ -112,18 +109,6 @@ def _reading() -> Callable[[str, str, str], Union[bytes, str]]:
         return look.to_bytes()
 
     return read
-
-
-def _read_description(path: str) -> Union[bytes, str]:
-    """Return the content of a file that holds a description, or why it does not."""
-    from planar.files.reading import read_bytes
-
-    try:
-        content = read_bytes(path)
-        SceneDescription.from_bytes(content)
-    except (OSError, ValueError, LookupError, BadZipFile) as error:
-        return f"{path}: no description of a world ({error})"
-    return content
 
 
 if __name__ == "__main__":
