@@ -107,24 +107,22 @@ def test_a_program_that_is_imported_by_the_way_does_not_wait_for_all_that_is_pre
     modules, tmp_path, monkeypatch
 ):
     """As the description of the robot, which roslaunch needs before it starts the first node."""
-    waiting = "import pathlib, time\nwhile not pathlib.Path({!r}).exists(): time.sleep(0.01)\n"
     (tmp_path / "node.py").write_text("import program\ndef report(): program.report('node')\n")
-    for name in ("first", "second"):
-        (tmp_path / f"{name}.py").write_text(waiting.format(f"{name}_goes_on"))
+    step = "import pathlib, time\ndef take(): time.sleep(0.0 if pathlib.Path('hurry').exists() else 0.05)\n"
+    (tmp_path / "step.py").write_text(step)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv(FORK_SERVER, "")
-    server = start_fork_server(["node", "first", "second"])
+    server = start_fork_server(["node", *["step:take"] * 1000])
     address = os.environ[FORK_SERVER]
     try:
         wait_until(lambda: is_there(address))
-        node, program = start(address, "node:report"), start(address, "program:report", "program")
-        time.sleep(1.0)  # until both wait for the server
-        assert (node.poll(), program.poll()) == (None, None)
-        (tmp_path / "first_goes_on").touch()
-        assert program.communicate("", timeout=SECONDS)[0] == f"forked program word {tmp_path} \n"
+        node = start(address, "node:report", stdin=subprocess.DEVNULL)
+        for _ in range(2):  # a node that did not wait would have ended before the second one
+            program = start(address, "program:report", "program")
+            assert program.communicate("", timeout=SECONDS)[0] == f"forked program word {tmp_path} \n"
         assert node.poll() is None
-        (tmp_path / "second_goes_on").touch()
-        assert node.communicate("", timeout=SECONDS)[0] == f"forked node word {tmp_path} \n"
+        (tmp_path / "hurry").touch()
+        assert node.communicate(timeout=SECONDS)[0] == f"forked node word {tmp_path} \n"
     finally:
         server.kill()
         server.wait()
