@@ -1,14 +1,28 @@
 """Simulated time passes beside other people's nodes when they rest, and never waits for ever."""
 
 import itertools
+import shutil
 import subprocess
 import sys
 import time
 
 import pytest
 
-from sim_bridge.rest.barrier import MOST_NEWS, OTHERS_PATIENCE_SECONDS, RECOVERY_SECONDS, RestBarrier
-from sim_bridge.rest.threads import ProcessThreads, has_ended, is_native
+from sim_bridge.rest.barrier import (
+    MOST_NEWS,
+    OTHERS_PATIENCE_SECONDS,
+    RECOVERY_SECONDS,
+    AwaitedRest,
+    RestBarrier,
+)
+from sim_bridge.rest.threads import (
+    WATCH_SECONDS,
+    WATCHES,
+    PollingThreads,
+    ProcessThreads,
+    has_ended,
+    is_native,
+)
 
 QUIET, PATIENCE, LOOK = 0.002, 5.0, 0.0005
 
@@ -17,6 +31,7 @@ class Run:
     """A simulation with nodes that are busy until given wall times."""
 
     AWAITED = frozenset({"amcl", "move_base", "planner", "spinning"})
+    from_first_rest = False
 
     def __init__(self, **busy_until):
         self.barrier = RestBarrier(PATIENCE)
@@ -25,12 +40,14 @@ class Run:
     def step(self, news_until=0.0):
         """Wait until the nodes have rested; return the wall time that it took."""
         begun = self.wall
-        while not self.barrier.is_passed(
-            self.wall, self._nodes(), self.AWAITED, self.wall < news_until, QUIET
-        ):
+        while not self.look(news_until):
             self.wall += LOOK
             assert self.wall - begun < 60.0, "the simulation stands still"
         return self.wall - begun
+
+    def look(self, news_until=0.0):
+        rest = AwaitedRest(self._nodes(), self.AWAITED, QUIET, self.from_first_rest)
+        return self.barrier.is_passed(self.wall, rest, self.wall < news_until)
 
     def _nodes(self):
         return {name: lambda until=until: self.wall >= until for name, until in self.busy_until.items()}
@@ -53,10 +70,26 @@ def test_a_loop_that_looks_at_the_clock_does_not_prolong_the_wait():
     """Seen running at each third look, as a loop that sleeps for a millisecond."""
     barrier, looks, wall = RestBarrier(PATIENCE), itertools.count(), 0.0
     nodes = {"move_base": lambda: next(looks) % 3 != 1}
-    while not barrier.is_passed(wall, nodes, ("move_base",), False, QUIET):
+    while not barrier.is_passed(wall, AwaitedRest(nodes, ("move_base",), QUIET), False):
         wall += LOOK
         assert wall < 0.05
     assert wall <= QUIET + 2 * LOOK
+
+
+def test_a_quiet_time_may_begin_with_the_first_rest():
+    """A loop that looks at the clock may have done so just before the receiver of the time came to run."""
+    run = Run(amcl=0.010)
+    run.from_first_rest = True
+    assert 0.010 + QUIET <= run.step() <= 0.010 + QUIET + 2 * LOOK
+    assert QUIET <= run.step() <= QUIET + 3 * LOOK
+
+
+def test_such_a_quiet_time_begins_again_after_a_node_was_busy_twice():
+    barrier, looks, wall = RestBarrier(PATIENCE), iter([True, False, False, True, *[True] * 99]), 0.0
+    rest = AwaitedRest({"amcl": lambda: next(looks)}, ("amcl",), QUIET, from_first_rest=True)
+    while not barrier.is_passed(wall, rest, False):
+        wall += LOOK
+    assert wall >= 4 * LOOK + QUIET
 
 
 def test_a_message_that_arrives_is_processed_before_time_passes():
@@ -88,9 +121,9 @@ def test_a_node_is_not_given_up_because_the_machine_stands_still(name):
     """All processes of a virtual machine stop for seconds, or get little time beside others."""
     run = Run(**{name: 2.0 * PATIENCE + 0.15})
     for stall in (PATIENCE + 0.1, PATIENCE):
-        run.barrier.is_passed(run.wall, run._nodes(), run.AWAITED, False, QUIET)
+        run.look()
         run.wall += LOOK
-        run.barrier.is_passed(run.wall, run._nodes(), run.AWAITED, False, QUIET)
+        run.look()
         run.wall += stall
     assert run.step() == pytest.approx(0.05, abs=QUIET)
     assert not run.barrier.given_up
@@ -113,9 +146,8 @@ def test_a_node_that_was_late_is_waited_for_again_although_the_clock_wakes_it():
     rests = [True, True, False]
     for look in range(int(2.5 * RECOVERY_SECONDS / LOOK)):
         run.wall += LOOK
-        run.barrier.is_passed(
-            run.wall, {"planner": lambda look=look: rests[look % 3]}, run.AWAITED, False, QUIET
-        )
+        nodes = {"planner": lambda look=look: rests[look % 3]}
+        run.barrier.is_passed(run.wall, AwaitedRest(nodes, run.AWAITED, QUIET), False)
     assert not run.barrier.given_up
 
 
@@ -129,7 +161,7 @@ def test_a_node_that_has_ended_is_dropped():
 
 def test_time_that_restarts_begins_a_new_barrier():
     run = Run(amcl=1.0)
-    assert not run.barrier.is_passed(0.0, run._nodes(), run.AWAITED, False, QUIET)
+    assert not run.look()
     run.barrier.reset()
     run.wall, run.busy_until["amcl"] = 1.0, 1.0
     assert run.step() == pytest.approx(QUIET, abs=LOOK)
@@ -231,6 +263,77 @@ def test_threads_that_wait_at_each_look_but_take_time_in_between_do_not_rest(tmp
     times = iter([(0.0, 0.0), (LOOK, 0.8 * LOOK), (2.0 * LOOK, 0.82 * LOOK)])
     threads = ProcessThreads(7, tmp_path, lambda: next(times))
     assert [threads.are_resting() for _ in range(3)] == [True, False, True]
+
+
+# Eight threads that wait for ever, and with "poll" one that looks at a clock each millisecond.
+WAIT_OR_POLL = r"""
+#include <condition_variable>
+#include <cstdio>
+#include <mutex>
+#include <thread>
+int main(int count, char**)
+{
+  std::mutex mutex;
+  std::condition_variable never;
+  using Lock = std::unique_lock<std::mutex>;
+  const auto wait = [&] { Lock lock(mutex); never.wait(lock); };
+  const auto poll = [&] {
+    while (true) { Lock lock(mutex); never.wait_for(lock, std::chrono::milliseconds(1)); }
+  };
+  for (int i = 0; i < 8; i++) std::thread(wait).detach();
+  if (count > 1) std::thread(poll).detach();
+  std::puts("");
+  std::fflush(stdout);
+  wait();
+}
+"""
+
+
+@pytest.fixture(scope="module")
+def native_program(tmp_path_factory):
+    if shutil.which("g++") is None:
+        pytest.skip("no compiler")
+    folder = tmp_path_factory.mktemp("native")
+    (folder / "node.cpp").write_text(WAIT_OR_POLL)
+    command = ["g++", "-std=c++17", "-pthread", str(folder / "node.cpp"), "-o", str(folder / "node")]
+    subprocess.run(command, check=True)
+    return folder / "node"
+
+
+@pytest.mark.parametrize(("arguments", "polls"), [([], False), (["poll"], True)])
+def test_threads_that_look_at_the_clock_are_learned(native_program, arguments, polls):
+    process = subprocess.Popen([str(native_program), *arguments], stdout=subprocess.PIPE)
+    try:
+        process.stdout.readline()
+        threads = ProcessThreads(process.pid)
+        assert threads.may_poll(), "nothing is known yet"
+        for _ in range(2 * WATCHES):
+            known = threads.may_poll()
+            while not threads.are_resting():
+                time.sleep(LOOK)
+            time.sleep(1.2 * WATCH_SECONDS)
+            threads.are_resting()
+        assert known == polls
+        threads.close()
+    finally:
+        process.kill()
+        process.wait()
+
+
+def test_a_thread_that_runs_between_two_barriers_only_does_not_look_at_the_clock(tmp_path):
+    (tmp_path / "8").mkdir()
+    threads, wall = PollingThreads(tmp_path), 0.0
+    for barrier in range(2 * WATCHES):
+        (tmp_path / "8" / "schedstat").write_text(f"1 1 {barrier}")
+        (tmp_path / "8" / "syscall").write_text("202 0x1")
+        polls = threads.may_be_any(["8"])
+        for _ in range(2):
+            wall += 1.5 * WATCH_SECONDS
+            threads.watch(wall, ["8"])
+        threads.stop_watching()
+    assert not polls
+    (tmp_path / "8" / "syscall").write_text("230 0x1")
+    assert threads.may_be_any(["8"]), "it sleeps"
 
 
 def test_an_ended_process_is_noticed(program):

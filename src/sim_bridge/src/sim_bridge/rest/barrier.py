@@ -3,13 +3,14 @@
 from dataclasses import dataclass, field
 from typing import Callable, Container, Dict, Mapping, Optional
 
-# Time for which all nodes must rest after a message of the clock [wall s]: a loop of roscpp that sleeps in
-# simulated time looks at the clock each millisecond.
-QUIET_SECONDS = 0.002
-# The same after other messages: their receivers are ready to run when they have been sent.
+# Time for which all nodes must rest after a message of the clock [wall s], from a look at which they did, if
+# one has loops or timers of roscpp: these look at the clock each millisecond.
+POLLING_SECONDS = 0.0012
+# The same after other messages, and without such loops: receivers are ready to run when they have been sent.
 DATA_QUIET_SECONDS = 0.0003
-# The same before a message of the clock: what one node has sent to another may still be under way.
-BEFORE_CLOCK_QUIET_SECONDS = 0.001
+# The same before a message of the clock where nodes send each other messages, and before a tick: what one has
+# sent to another may still be under way.
+BETWEEN_NODES_QUIET_SECONDS = 0.001
 # The same while nodes start, which look for each other with longer pauses.
 SETTLING_QUIET_SECONDS = 0.03
 # Shortest time between two looks [wall s].
@@ -27,13 +28,31 @@ PATIENCE_SECONDS, OTHERS_PATIENCE_SECONDS, RECOVERY_SECONDS = 5.0, 0.5, 2.0
 BUSY_LOOKS_PER_SECOND = 400.0
 
 
+@dataclass(frozen=True)
+class AwaitedRest:
+    """What a barrier waits for.
+
+    Attributes:
+        nodes: Functions that return whether a node rests, by its name.
+        awaited: The nodes for which the simulation has full patience; others may only take part in what these
+            do.
+        quiet: Time for which all nodes must rest [wall s].
+        from_first_rest: Count it from the first look at which they did, not from the barrier's begin.
+    """
+
+    nodes: Mapping[str, Callable[[], bool]]
+    awaited: Container[str]
+    quiet: float
+    from_first_rest: bool = False
+
+
 @dataclass
 class _Barrier:
     """A barrier at which the simulation waits.
 
     Attributes:
         begun: When the simulation reached it [wall s].
-        quiet_since: Since when all nodes rest [wall s].
+        quiet_since: Since when all nodes rest [wall s]; None before the look that decides.
         busy: Node that did not rest at the latest look; None if all did.
         busy_looks: Number of looks at which a node was the first that did not rest, by name.
         rests: Number of the latest looks at which all nodes rested.
@@ -42,7 +61,7 @@ class _Barrier:
     """
 
     begun: float
-    quiet_since: float
+    quiet_since: Optional[float]
     busy: Optional[str] = None
     busy_looks: Dict[str, int] = field(default_factory=dict)
     rests: int = 0
@@ -88,30 +107,22 @@ class RestBarrier:
         """Leave the barrier, as simulated time restarts."""
         self._barrier = None
 
-    def is_passed(
-        self,
-        wall: float,
-        nodes: Mapping[str, Callable[[], bool]],
-        awaited: Container[str],
-        has_news: bool,
-        quiet: float = QUIET_SECONDS,
-    ) -> bool:
+    def is_passed(self, wall: float, rest: AwaitedRest, has_news: bool) -> bool:
         """Return whether the nodes have rested at this barrier; the next call is about the next barrier then.
 
         Args:
             wall: Wall clock [s].
-            nodes: Functions that return whether a node rests, by its name.
-            awaited: The nodes for which the simulation has full patience; others may only take part in what
-                these do.
+            rest: What to wait for.
             has_news: Whether a message has arrived since the last call: a node may not have rested before.
-            quiet: Time for which all nodes must rest [wall s].
         """
+        nodes, quiet = rest.nodes, rest.quiet
         barrier = self._barrier
         if barrier is None:
-            self._barrier = _Barrier(wall, wall, next_look=wall + quiet / LOOKS)
+            since, first = (None, LOOK_SECONDS) if rest.from_first_rest else (wall, quiet / LOOKS)
+            self._barrier = _Barrier(wall, since, next_look=wall + first)
             return False
         if has_news and barrier.news < MOST_NEWS:
-            barrier.news, barrier.quiet_since = barrier.news + 1, wall
+            barrier.news, barrier.quiet_since = barrier.news + 1, None if rest.from_first_rest else wall
         if wall < barrier.next_look:
             return False
         self._recover(wall, nodes)
@@ -120,19 +131,30 @@ class RestBarrier:
             next((name for name, rests in nodes.items() if name not in self.given_up and not rests()), None),
         )
         if barrier.busy is not None:
-            looks = barrier.busy_looks[barrier.busy] = barrier.busy_looks.get(barrier.busy, 0) + 1
-            patience = self._patience if barrier.busy in awaited else OTHERS_PATIENCE_SECONDS
             if barrier.busy == before:
-                barrier.quiet_since = wall
-                if wall - barrier.begun > patience and looks > BUSY_LOOKS_PER_SECOND * patience:
-                    self.given_up[barrier.busy] = _Absence(wall)
-        barrier.rests = barrier.rests + 1 if barrier.busy is None else 0
-        pause = min(quiet / LOOKS, barrier.quiet_since + quiet - wall)
-        barrier.next_look = wall + (max(LOOK_SECONDS, pause) if barrier.busy is None else LOOK_SECONDS)
-        if barrier.rests < LOOKS or wall - barrier.quiet_since < quiet:
+                barrier.quiet_since = None if rest.from_first_rest else wall
+            self._note_busy(barrier, barrier.busy, before, rest.awaited, wall)
+            barrier.next_look = wall + LOOK_SECONDS
             return False
-        self._barrier = None
-        return True
+        barrier.rests += 1
+        barrier.quiet_since = wall if barrier.quiet_since is None else barrier.quiet_since
+        is_over = barrier.rests >= LOOKS and wall - barrier.quiet_since >= quiet
+        pause = min(quiet if rest.from_first_rest else quiet / LOOKS, barrier.quiet_since + quiet - wall)
+        barrier.next_look = wall + max(LOOK_SECONDS, pause)
+        if is_over:
+            self._barrier = None
+        return is_over
+
+    def _note_busy(
+        self, barrier: _Barrier, name: str, before: Optional[str], awaited: Container[str], wall: float
+    ) -> None:
+        """Note that a node did not rest at a look, after that which did not rest at the look before."""
+        barrier.rests = 0
+        looks = barrier.busy_looks[name] = barrier.busy_looks.get(name, 0) + 1
+        patience = self._patience if name in awaited else OTHERS_PATIENCE_SECONDS
+        is_late = wall - barrier.begun > patience and looks > BUSY_LOOKS_PER_SECOND * patience
+        if name == before and is_late:
+            self.given_up[name] = _Absence(wall)
 
     def pause(self, wall: float) -> float:
         """Return the time until the next look [s].

@@ -35,6 +35,7 @@ class PaceRule:
         reason: Why the node has this rule.
         repeats: How far runs repeat beside this node; empty: as usual for the kind.
         keeps: Topics whose messages the node keeps until the clock, or another topic, has it use them.
+        timers: Whether something depends on when in an instant its timers run.
     """
 
     kind: str
@@ -42,6 +43,7 @@ class PaceRule:
     reason: str = ""
     repeats: str = ""
     keeps: FrozenSet[str] = frozenset()
+    timers: bool = True
 
     def sentence(self, name: str) -> str:
         """Return the rule of a node in words: rule, reason, and how far runs repeat."""
@@ -110,7 +112,7 @@ def read_known_nodes(path: Path) -> Dict[str, PaceRule]:
     """Read the rules of known programs.
 
     Args:
-        path: YAML file: program -> ``rule`` and, optionally, ``repeats`` and ``keeps``.
+        path: YAML file: program -> ``rule`` and, optionally, ``repeats``, ``keeps`` and ``timers``.
 
     Raises:
         SettingsError: The file is not valid.
@@ -119,14 +121,15 @@ def read_known_nodes(path: Path) -> Dict[str, PaceRule]:
     rules: Dict[str, PaceRule] = {}
     for program in table:
         entry = table.table(program)
-        entry.allow_only("rule", "repeats", "keeps")
+        entry.allow_only("rule", "repeats", "keeps", "timers")
         try:
             rule = parse_rule(entry.text("rule"))
         except SettingsError as error:
             raise entry.error_at("rule", f"is invalid: {error}") from None
         repeats = entry.text("repeats", REPEATS[rule.kind])
         keeps = frozenset(entry.text("keeps").split()) if "keeps" in entry else frozenset()
-        rules[program] = PaceRule(rule.kind, rule.topic, f"known program {program}", repeats, keeps)
+        timers = entry.flag("timers", True)
+        rules[program] = PaceRule(rule.kind, rule.topic, f"known program {program}", repeats, keeps, timers)
     return rules
 
 

@@ -1,5 +1,6 @@
 """Whether the threads of a process rest: all wait, none is running or ready to run (proc(5))."""
 
+import ctypes
 import os
 import time
 from pathlib import Path
@@ -10,6 +11,14 @@ WAITING_STATES = frozenset(b"SItTXZ")
 # Bytes of /proc/PID/task/TID/stat up to the state: two numbers and a name of at most 64 bytes.
 STAT_BYTES = 128
 PROC = Path("/proc")
+# Time between two looks at a thread in which one that looks at the clock each millisecond has run [wall s],
+# and number of such pairs of looks after which a thread is known.
+WATCH_SECONDS, WATCHES = 0.0011, 20
+# A thread's wait may take so much longer than asked for [ns]: at a barrier short ones follow each other, and
+# Linux's default is 50 000.
+PR_SET_TIMERSLACK, TIMER_SLACK_NANOSECONDS = 29, 1000
+# Numbers of system calls in which a thread sleeps, on x86-64 and ARM.
+SLEEPS = (b"35", b"230", b"101", b"115")
 # Links of a folder without threads.
 FOLDER_LINKS = 2
 # Processor time that threads take which only look at the clock: share of the time between two looks at the
@@ -36,6 +45,19 @@ class ProcessThreads:
         self._times = times or self._measured_times
         self._at_rest: Optional[Tuple[float, float]] = None
         self._is_backward = False
+        self._polling = PollingThreads(self._folder) if is_native(pid, proc) else None
+
+    def may_poll(self) -> bool:
+        """Return whether a thread may look at the clock again and again, and learn it at this barrier.
+
+        Threads of Python wait for the clock itself.
+        """
+        return self._polling is not None and self._polling.may_be_any(self._names())
+
+    def stop_watching(self) -> None:
+        """Learn no more at this barrier: threads may run for another reason before the next look."""
+        if self._polling is not None:
+            self._polling.stop_watching()
 
     def are_resting(self) -> bool:
         """Return whether all threads wait, and have hardly run since the last call if they waited then, too.
@@ -51,8 +73,11 @@ class ProcessThreads:
         names = self._names()
         if not all(map(self._is_waiting, reversed(names) if self._is_backward else names)):
             self._at_rest = None
+            self.stop_watching()
             return False
         before, self._at_rest = self._at_rest, self._times()
+        if self._polling is not None:
+            self._polling.watch(self._at_rest[0], names)
         if before is None:
             return True
         wall, processor = (now - then for now, then in zip(self._at_rest, before))
@@ -98,9 +123,69 @@ class ProcessThreads:
         return _state_in(stat) in WAITING_STATES
 
 
+class PollingThreads:
+    """Learns which threads of a process of roscpp look at the clock each millisecond, as its timers do.
+
+    Args:
+        folder: Folder of the kernel's information on the threads.
+    """
+
+    def __init__(self, folder: Path):
+        self._folder = folder
+        self._counts: Dict[str, Tuple[int, int]] = {}
+        self._seen: Optional[Dict[str, bytes]] = None
+        self._since = 0.0
+
+    def may_be_any(self, names: List[str]) -> bool:
+        """Return whether a thread sleeps, looks at the clock, or is unknown; begin to watch the unknown.
+
+        Args:
+            names: Numbers of the threads.
+        """
+        for gone in self._counts.keys() - names:
+            del self._counts[gone]
+        self._seen, self._since = {}, 0.0
+        return any(self._may_poll(name) or self._read(name, "syscall").split()[0] in SLEEPS for name in names)
+
+    def watch(self, wall: float, names: List[str]) -> None:
+        """Note whether threads have run since the last look; at a look at which all of them rest.
+
+        Args:
+            wall: Wall time [s].
+            names: Numbers of the threads.
+        """
+        if self._seen is None or wall - self._since < WATCH_SECONDS:
+            return
+        unknown = [name for name in names if self._counts.get(name, (0, 0))[0] < WATCHES]
+        now = {name: self._read(name, "schedstat").split()[-1] for name in unknown}
+        for name in now.keys() & self._seen.keys():
+            watches, runs = self._counts.get(name, (0, 0))
+            self._counts[name] = (watches + 1, runs + (now[name] != self._seen[name]))
+        self._seen, self._since = now or None, wall
+
+    def stop_watching(self) -> None:
+        """Discard the last look."""
+        self._seen = None
+
+    def _may_poll(self, name: str) -> bool:
+        watches, runs = self._counts.get(name, (0, 0))
+        return watches < WATCHES or 2 * runs >= WATCHES
+
+    def _read(self, name: str, file: str) -> bytes:
+        try:
+            return (self._folder / name / file).read_bytes() or b"0"
+        except OSError:
+            return b"0"  # it has ended
+
+
 def _state_in(stat: bytes) -> int:
     """Return the state in a stat file: it follows the name, which ends at the last bracket."""
     return stat[stat.rfind(b")") + 2]
+
+
+def wake_promptly() -> None:
+    """Have the waits of the calling thread end on time."""
+    ctypes.CDLL(None).prctl(PR_SET_TIMERSLACK, TIMER_SLACK_NANOSECONDS, 0, 0, 0)
 
 
 def has_ended(pid: int, proc: Path = PROC) -> bool:

@@ -29,6 +29,7 @@ from sim_bridge.geometry.pose3 import to_pose2
 from sim_bridge.noise import noise_named
 from sim_bridge.pacing import Pacer
 from sim_bridge.rest.rules import parse_rules, read_known_nodes
+from sim_bridge.rest.threads import wake_promptly
 from sim_bridge.robots import robot_named
 from sim_bridge.ros.call_queue import CallQueue
 from sim_bridge.ros.description import find_file, model_folders
@@ -109,6 +110,7 @@ class Bridge:
     def run(self) -> None:
         """Step until shutdown."""
         transport.batch_sends()
+        wake_promptly()
         try:
             while not rospy.is_shutdown():
                 self._calls.run_pending(self._lock_step.awaited, self._lock_step.members)

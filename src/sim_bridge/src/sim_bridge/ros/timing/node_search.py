@@ -28,12 +28,14 @@ class FoundNode(NamedTuple):
         rule: Rule by which it is paced.
         takes_part: Whether another node that is not an observer subscribes to one of its topics.
         is_known: Whether it has had the time to subscribe to the clock, so that its rule is final.
+        receivers: Other nodes found that subscribe to one of its topics, without observers.
     """
 
     pid: Optional[int]
     rule: PaceRule
     takes_part: bool
     is_known: bool
+    receivers: FrozenSet[str] = frozenset()
 
 
 class NodeSearch:
@@ -47,7 +49,7 @@ class NodeSearch:
     Attributes:
         nodes: The nodes found, by name.
         searched: Names that have been searched for.
-        changes: Number of searches that found other topics or services than before.
+        changes: Number of searches that found topics or services of nodes that were not there before.
         finished: Number of searches that have finished.
         unconnected: Connections that the latest search found missing, as texts; asked for by ``request``.
     """
@@ -79,13 +81,13 @@ class NodeSearch:
         return self._begun + 1
 
     def _run(self) -> None:
-        before = None
+        before: Optional[Tables] = None
         while not rospy.is_shutdown():
             self._begun += 1
             with_connections = self._is_requested.is_set()
             self._is_requested.clear()
             graph = self._check.graph()
-            self.changes += graph != before
+            self.changes += before is None or _has_more(graph, before)
             before = graph
             names = {MASTER, *chain(*(chain(*table.values()) for table in graph))} - {rospy.get_name()}
             self._find_processes({name for name in names if not name.startswith(self._bystanders)})
@@ -127,12 +129,26 @@ class NodeSearch:
             facts = NodeFacts(name, program, name == MASTER or name in on_clock or not is_known)
             rule = choose_rule(facts, self._named, self._known)
             found[name] = FoundNode(pid, rule, False, is_known)
-        receivers = {name for name, node in found.items() if node.rule.kind != "observe"} | {rospy.get_name()}
+        others = {name for name, node in found.items() if node.rule.kind != "observe"} | {rospy.get_name()}
+        receivers: Dict[str, Set[str]] = {}
         for topic in published.keys() - LOG_TOPICS:
             for name in found.keys() & set(published[topic]):
-                if receivers.intersection(subscribed.get(topic, ())) - {name}:
-                    found[name] = found[name]._replace(takes_part=True)
+                subscribers = others.intersection(subscribed.get(topic, ())) - {name}
+                receivers.setdefault(name, set()).update(subscribers)
+        for name, names in receivers.items():
+            found[name] = found[name]._replace(
+                takes_part=bool(names), receivers=frozenset(names & found.keys())
+            )
         return found
+
+
+def _has_more(graph: Tables, before: Tables) -> bool:
+    """Whether a graph has an entry that it had not before; a node that has gone connects to nothing."""
+    return any(
+        set(nodes).difference(earlier.get(name, ()))
+        for table, earlier in zip(graph, before)
+        for name, nodes in table.items()
+    )
 
 
 def _program(pid: int, proc: Path = PROC) -> str:

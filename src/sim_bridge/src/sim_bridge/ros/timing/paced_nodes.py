@@ -2,7 +2,7 @@
 
 import time
 from enum import Enum
-from typing import Callable, Dict, FrozenSet, List, Mapping, Set, Tuple
+from typing import Callable, Dict, FrozenSet, List, Mapping, Optional, Set, Tuple
 
 import rospy
 from std_msgs.msg import String
@@ -10,11 +10,12 @@ from std_msgs.msg import String
 from planar_ros.lockstep.transport import INSTANT_TOPIC
 from rospy_transport.connections import has_undelivered, has_unread, message_count, outgoing
 from sim_bridge.rest.barrier import (
-    BEFORE_CLOCK_QUIET_SECONDS,
+    BETWEEN_NODES_QUIET_SECONDS,
     DATA_QUIET_SECONDS,
     PATIENCE_SECONDS,
-    QUIET_SECONDS,
+    POLLING_SECONDS,
     SETTLING_QUIET_SECONDS,
+    AwaitedRest,
     RestBarrier,
 )
 from sim_bridge.rest.rules import PaceRule
@@ -46,6 +47,40 @@ class Before(Enum):
     CLOCK = 2
     TICK = 3
     STEP = 4
+
+
+class _NewConnections:
+    """Whether nodes that start have connected: they do so in threads that rest in between.
+
+    Args:
+        search: Finds missing connections.
+        remark: Called with a reason why the run may not be repeatable.
+    """
+
+    def __init__(self, search: NodeSearch, remark: Callable[[str], None]):
+        self._search, self._remark = search, remark
+        self._awaited_search, self._since = 0, 0.0
+        self._unconnectable: Set[str] = set()
+
+    def check_again(self) -> None:
+        """Have a search begin at the next barrier."""
+        self._awaited_search = 0
+
+    def are_made(self) -> bool:
+        """Return whether a search that has begun at this barrier found all connections made."""
+        wall = time.monotonic()
+        if not self._awaited_search:
+            self._awaited_search, self._since = self._search.request(), wall
+        if self._search.finished < self._awaited_search:
+            return False
+        missing = [text for text in self._search.unconnected if text not in self._unconnectable]
+        if missing and wall - self._since <= CONNECT_SECONDS:
+            self._awaited_search = self._search.request()
+            return False
+        for text in missing:
+            self._unconnectable.add(text)
+            self._remark(f"{text} was not made within {CONNECT_SECONDS:g} s")
+        return True
 
 
 class PacedNodes:
@@ -85,14 +120,14 @@ class PacedNodes:
         self._taken: Tuple[object, ...] = (None,)
         self._wanted: FrozenSet[str] = frozenset()
         self._synchronised: FrozenSet[str] = frozenset()
-        self._submitted = 0
         self._reported: FrozenSet[str] = frozenset()
         self._sentences: Dict[str, str] = {}
         self._sentences_topic = rospy.Publisher(PACE_TOPIC, String, queue_size=1, latch=True)
-        self._seen_changes = 0
-        self._awaited_search, self._unconnected_since = 0, 0.0
-        self._unconnectable: Set[str] = set()
+        self._submitted = self._seen_changes = 0
+        self._connections = _NewConnections(search, remark)
         self._settled_at, self._is_graph_new = 0.0, False
+        self._wait: Optional[AwaitedRest] = None
+        self._is_answered = False
         self._sent_before: SentCounts = {}
         self._sent_now: SentCounts = {}
 
@@ -152,44 +187,42 @@ class PacedNodes:
             self._seen_changes, self._settled_at = self._search.changes, stamp + SETTLING_SECONDS
             self._is_graph_new = True
         is_settling = stamp < self._settled_at
-        if is_settling and before is Before.CLOCK and not self._are_connected():
+        if is_settling and before is Before.CLOCK and not self._connections.are_made():
             return False
         if not self._barrier.is_begun:
             sent = _sent(self._nodes)
             must_look = is_settling or has_news or before in (Before.SENSORS, Before.TICK)
             if not must_look and not self._are_woken(sent, before is Before.CLOCK or is_clock_sent):
                 return True
-            self._sent_now = sent
-        chosen = self._chosen(is_settling or before is Before.TICK)
-        nodes = {name: self._rest_of(name, self._threads[name]) for name in sorted(chosen, reverse=True)}
-        nodes[SYNCHRONISED] = lambda: is_answered
-        nodes[MESSAGES] = lambda: not has_undelivered(chosen)
-        quiet = _quiet(self._is_graph_new, before, is_clock_sent)
-        awaited = self._awaited() | {SYNCHRONISED, MESSAGES}
-        is_passed = self._barrier.is_passed(time.monotonic(), nodes, awaited, has_news, quiet)
+            self._sent_now, self._wait = sent, None
+        self._is_answered = is_answered
+        if self._wait is None:
+            chosen = self._chosen(is_settling or before is Before.TICK)
+            self._wait = self._wait_for(chosen, before, is_clock_sent)
+        is_passed = self._barrier.is_passed(time.monotonic(), self._wait, has_news)
         self._report()
         if is_passed:
-            self._awaited_search, self._is_graph_new, self._sent_before = 0, False, self._sent_now
+            self._connections.check_again()
+            self._is_graph_new, self._sent_before = False, self._sent_now
         return is_passed
 
-    def _are_connected(self) -> bool:
-        """Whether a search that has begun at this barrier found all connections made.
-
-        Subscribers connect in threads that rest in between, and may miss what is sent meanwhile.
-        """
-        wall = time.monotonic()
-        if not self._awaited_search:
-            self._awaited_search, self._unconnected_since = self._search.request(), wall
-        if self._search.finished < self._awaited_search:
-            return False
-        missing = [text for text in self._search.unconnected if text not in self._unconnectable]
-        if missing and wall - self._unconnected_since <= CONNECT_SECONDS:
-            self._awaited_search = self._search.request()
-            return False
-        for text in missing:
-            self._unconnectable.add(text)
-            self._remark(f"{text} was not made within {CONNECT_SECONDS:g} s")
-        return True
+    def _wait_for(self, chosen: Set[str], before: Before, is_clock_sent: bool) -> AwaitedRest:
+        for name in chosen:
+            self._threads[name].stop_watching()
+        is_clock_read = is_clock_sent and before is not Before.CLOCK
+        is_polled = False
+        if self._is_graph_new:
+            quiet = SETTLING_QUIET_SECONDS
+        elif is_clock_read and _may_poll(chosen, self._nodes, self._threads):
+            quiet, is_polled = POLLING_SECONDS, True
+        elif before is Before.TICK or before is Before.CLOCK and _are_sending(chosen, self._nodes):
+            quiet = BETWEEN_NODES_QUIET_SECONDS
+        else:
+            quiet = DATA_QUIET_SECONDS
+        nodes = {name: self._rest_of(name, self._threads[name]) for name in sorted(chosen, reverse=True)}
+        nodes[SYNCHRONISED] = lambda: self._is_answered
+        nodes[MESSAGES] = lambda: not has_undelivered(chosen)
+        return AwaitedRest(nodes, self._awaited() | {SYNCHRONISED, MESSAGES}, quiet, is_polled)
 
     @property
     def pause(self) -> float:
@@ -237,6 +270,7 @@ class PacedNodes:
 
     def _drop(self, name: str) -> None:
         """Wait no longer for a node that has ended."""
+        self._wait = None
         threads = self._threads.pop(name, None)
         if threads is not None:
             self._ended[name] = threads.pid
@@ -260,7 +294,7 @@ class PacedNodes:
         found = (self._search.nodes, self._wanted, self._synchronised)
         if found[0] is self._taken[0] and found[1:] == self._taken[1:]:
             return
-        self._taken = found
+        self._taken, self._wait = found, None
         self._nodes = found[0]
         for name in self._threads.keys() - self._nodes.keys():
             self._drop(name)
@@ -296,10 +330,14 @@ def _sent(nodes: Mapping[str, FoundNode]) -> SentCounts:
     return sent_counts(rows, {name: node.rule.keeps for name, node in nodes.items()})
 
 
-def _quiet(is_graph_new: bool, before: Before, is_clock_sent: bool) -> float:
-    """Return the time for which all nodes must rest at a barrier [wall s]."""
-    if is_graph_new:
-        return SETTLING_QUIET_SECONDS
-    if before is Before.CLOCK:
-        return BEFORE_CLOCK_QUIET_SECONDS
-    return QUIET_SECONDS if is_clock_sent else DATA_QUIET_SECONDS
+def _may_poll(
+    chosen: Set[str], nodes: Mapping[str, FoundNode], threads: Mapping[str, ProcessThreads]
+) -> bool:
+    """Whether loops or timers of chosen nodes look at the clock; all are asked, so that they are learned."""
+    with_timers = [name for name in chosen if name not in nodes or nodes[name].rule.timers]
+    return sum(threads[name].may_poll() for name in with_timers) > 0
+
+
+def _are_sending(chosen: Set[str], nodes: Mapping[str, FoundNode]) -> bool:
+    """Whether some of the chosen nodes receive messages of others of them."""
+    return any(nodes[name].receivers & chosen for name in chosen & nodes.keys())
