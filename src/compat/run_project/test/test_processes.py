@@ -1,16 +1,25 @@
-"""Which nodes of a project get a lower priority."""
+"""Which processes of a project start, sleep, or get a lower priority."""
 
+import subprocess
+import sys
+import time
 from types import SimpleNamespace
 
+import psutil
 import pytest
 
+from run_project.ros.graph_nodes import ATTEMPTS, GraphNodes
 from run_project.ros.processes import (
     BUSY_NICENESS,
+    LONG_SLEEP_SECONDS,
     NODE_SECONDS,
     PROGRAM_SECONDS,
     BusyProcesses,
+    ListedProcess,
+    WallSleeps,
     starting_seconds,
 )
+from run_project.stand_ins import STAND_INS
 
 
 class FakeProcess:
@@ -46,16 +55,73 @@ def test_only_nodes_that_spin_without_sleeping_get_a_lower_priority(cpu_share, r
 
 
 @pytest.mark.parametrize(
-    ("command", "has_children", "is_of_project", "seconds"),
+    ("command", "has_children", "is_node", "seconds"),
     [
         (["python3", "/opt/ros/bin/roslaunch", "robot", "world.launch"], False, False, NODE_SECONDS),
         (["python3", "/opt/ros/bin/roslaunch", "robot", "world.launch"], True, False, 0.0),
-        (["/ws/devel/lib/robot/drive", "__name:=drive", "__log:=x"], False, True, NODE_SECONDS),
-        (["/opt/ros/lib/amcl/amcl", "__name:=amcl"], False, False, 0.0),
-        (["/ws/devel/lib/robot/pick_objects"], False, True, PROGRAM_SECONDS),
+        (["/ws/devel/lib/robot/drive", "__name:=drive", "__log:=x"], False, False, NODE_SECONDS),
+        (["/opt/ros/lib/amcl/amcl", "__name:=amcl"], False, True, 0.0),
+        (["/ws/devel/lib/robot/pick_objects"], False, False, PROGRAM_SECONDS),
+        (["/ws/devel/lib/robot/pick_objects"], False, True, 0.0),
         (["bash", "/opt/ros/bin/rosrun", "robot", "pick_objects"], True, False, 0.0),
+        (["bash"], False, False, 0.0),
+        (["python3", str(STAND_INS / "bin" / "sleep"), "5"], False, False, 0.0),
     ],
 )
-def test_a_program_counts_as_starting_until_it_is_a_node(command, has_children, is_of_project, seconds):
-    nodes = {"/amcl", "/home/move_base"}
-    assert starting_seconds(command, has_children, is_of_project, nodes) == seconds
+def test_a_program_counts_as_starting_until_it_is_a_node(command, has_children, is_node, seconds):
+    listed = ListedProcess(None, 1, "name", command, 0.0)
+    assert starting_seconds(listed, has_children, is_node) == seconds
+
+
+SLEEP_CODE = "import time; print(flush=True); time.sleep(60)"
+LOOP_CODE = "import time; print(flush=True)\nwhile True: time.sleep(0.1)"
+TIMED_WAIT_CODE = """
+import threading
+threading.Timer(60.0, print).start()
+print(flush=True)
+threading.Event().wait()
+"""
+WAIT_CODE = "import threading; print(flush=True); threading.Event().wait()"
+
+
+@pytest.mark.parametrize(
+    ("code", "is_sleeping"),
+    [(SLEEP_CODE, True), (TIMED_WAIT_CODE, True), (LOOP_CODE, False), (WAIT_CODE, False)],
+)
+def test_a_thread_that_sleeps_for_long_is_noticed(code, is_sleeping):
+    process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE)
+    try:
+        process.stdout.readline()
+        sleeps, listed = WallSleeps(), [psutil.Process(process.pid)]
+        time.sleep(0.3)
+        assert not sleeps.are_any(listed, 0.0)
+        time.sleep(0.3)
+        assert sleeps.are_any(listed, LONG_SLEEP_SECONDS + 0.1) == is_sleeping
+    finally:
+        process.kill()
+        process.wait()
+
+
+def test_a_process_that_has_ended_does_not_sleep():
+    process = subprocess.Popen(["true"])
+    listed = [psutil.Process(process.pid)]
+    process.wait()
+    assert not WallSleeps().are_any(listed, 0.0)
+
+
+def test_nodes_are_asked_for_their_process_until_they_answer():
+    answers, asked = {"/a": [None, 5], "/b": [None] * 9}, []
+
+    def ask(name):
+        asked.append(name)
+        return answers[name].pop(0)
+
+    nodes = GraphNodes(ask)
+    for _ in range(6):
+        nodes.update(["/a", "/b"])
+    assert nodes.pids == {5}
+    assert asked.count("/a") == 2
+    assert asked.count("/b") == ATTEMPTS
+    assert nodes.names == {"a", "b"}
+    nodes.update(["/b"])
+    assert (nodes.pids, nodes.names) == (frozenset(), {"b"})

@@ -1,6 +1,8 @@
 """Preloaded process (forkserver) of which the nodes of a graph are forked: imports and numba kernels."""
 
 from functools import lru_cache
+from subprocess import Popen
+from typing import Tuple
 
 from supervision.fork_server import start_fork_server
 
@@ -15,9 +17,14 @@ NODES = (
 
 
 @lru_cache(maxsize=None)
-def preload_nodes() -> None:
-    """Start the preloaded process, unless it was started before; nodes started later are forked of it."""
-    start_fork_server([*NODES, "sim_bridge.views.section:warm_up", f"{__name__}:load_kernels"])
+def preload_nodes(prefix: Tuple[str, ...] = ()) -> "Popen[bytes]":
+    """Start the preloaded process, unless it was started before; nodes started later are forked of it.
+
+    Args:
+        prefix: Words that precede its command, for one with other mounts.
+    """
+    preparations = [*NODES, "sim_bridge.views.section:warm_up", f"{__name__}:load_kernels"]
+    return start_fork_server(preparations, prefix)
 
 
 def load_kernels() -> None:

@@ -38,7 +38,7 @@ F_SETSIG = 10
 _Client = Tuple[Dict[str, Any], socket.socket]
 
 
-def start_fork_server(preparations: Sequence[str]) -> "subprocess.Popen[bytes]":
+def start_fork_server(preparations: Sequence[str], prefix: Sequence[str] = ()) -> "subprocess.Popen[bytes]":
     """Start a preloaded process and put its address into the environment.
 
     Must be called by the main thread, with which it ends; it has ended when this process exits
@@ -46,9 +46,10 @@ def start_fork_server(preparations: Sequence[str]) -> "subprocess.Popen[bytes]":
 
     Args:
         preparations: Modules to import and functions to call, as ``package.module:name``.
+        prefix: Words that precede the command; the program they run has to execute it in its own process.
     """
     name = f"home_service_{os.getpid()}_{secrets.token_hex(8)}"
-    command = [sys.executable, "-m", "supervision.fork_server", name, *preparations]
+    command = [*prefix, sys.executable, "-m", "supervision.fork_server", name, *preparations]
     # Threads of BLAS are not forked, so children cannot use them.
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
     os.environ[FORK_SERVER] = name

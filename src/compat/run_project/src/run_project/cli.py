@@ -7,9 +7,10 @@ import re
 import sys
 import time
 from pathlib import Path
-from typing import Dict, List, Optional, Sequence
+from typing import Dict, List, Optional, Sequence, Tuple
 
 from cockpit.process import FREE_PORT, CockpitProcess
+from evaluation.preload import preload_nodes
 from evaluation.verdict import Verdict
 from planar import PlanarError
 from run_project.checkout.dry_run import recorded_calls
@@ -110,12 +111,15 @@ def run(options: ProjectOptions) -> int:
             display.print(f"warning: {need}")
         display.print(f"logs in {logs}")
         workspace = copy_checkout(checkout, placement, work.path)
+        prefix = _private_mounts(workspace, placement, texts, work.path)
+        if not options.build_only:
+            preload_nodes(prefix)
         display.show("building ...")
         build(workspace, logs / "build.log", display.print)
         display.print(f"built in {time.time() - started:.0f} s")
         if options.build_only:
             return 0
-        command = _project_command(options, workspace, placement, texts, script, work.path, logs)
+        command = _project_command(options, workspace, placement, prefix, script, work.path, logs)
         for target in sorted(placement.mounts):
             display.print(f"provides {target}, for this run alone")
         display.print(f"runs {_script_name(script, plan)}; times are simulated:")
@@ -224,29 +228,33 @@ def read_path_texts(checkout: Checkout, script: str = "") -> Dict[str, str]:
     return texts
 
 
-def _project_command(
-    options: ProjectOptions,
-    workspace: Workspace,
-    placement: Placement,
-    texts: Dict[str, str],
-    script: str,
-    work: Path,
-    logs: Path,
-) -> ProjectCommand:
-    tree = work / "tree"
-    mounts = {Path(target): tree / source for target, source in placement.mounts.items()}
+def _private_mounts(
+    workspace: Workspace, placement: Placement, texts: Dict[str, str], work: Path
+) -> Tuple[str, ...]:
+    """Command prefix that provides the absolute paths in the project's files."""
+    mounts = {Path(target): work / "tree" / source for target, source in placement.mounts.items()}
     for ros in sorted({found for text in texts.values() for found in ROS_FOLDER.findall(text)}):
         if not Path(ros).exists():
             mounts[Path(ros)] = _ros_distribution_substitute(work / Path(ros).name, workspace)
     root = work / "root"
     root.mkdir(exist_ok=True)
+    return tuple(private_mount_command(mounts, root))
+
+
+def _project_command(
+    options: ProjectOptions,
+    workspace: Workspace,
+    placement: Placement,
+    prefix: Tuple[str, ...],
+    script: str,
+    work: Path,
+    logs: Path,
+) -> ProjectCommand:
     file = workspace.checkout / script
     shell = [] if file.read_bytes()[:2] == b"#!" else ["bash"]
     command = [*shell, str(file), *options.script_arguments]
     variables = {**environment(workspace), **window_environment(options, logs)}
-    return ProjectCommand(
-        command, tree / placement.start, variables, work, private_mount_command(mounts, root)
-    )
+    return ProjectCommand(command, work / "tree" / placement.start, variables, work, prefix)
 
 
 def window_environment(options: ProjectOptions, logs: Path) -> Dict[str, str]:

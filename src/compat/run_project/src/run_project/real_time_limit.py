@@ -1,20 +1,19 @@
-"""Real time for as long as a project starts: its scripts sleep between windows, its nodes come up."""
+"""Real time for as long as a project's programs start."""
 
 from typing import Callable
 
 REAL_TIME = 1.0
-# Wall time after the last sleep [s]: a script opens a window between two of them.
-PAUSE_SECONDS = 1.0
-# Wall time after the last window from which on sleeping no longer counts [s]: the script waits for the end.
+# Wall time after the last start [s]: the next may follow, and the list of programs is not always fresh.
+PAUSE_SECONDS = 0.5
+# Wall time after the last window from which on starting no longer counts [s]: a program is started for ever.
 NO_MORE_WINDOWS_SECONDS = 60.0
 
 
 class RealTimeLimit:
     """Decides when simulated time may pass faster than real time.
 
-    Authors separate windows by ``sleep``, in wall time: with a faster simulation, the later windows would
-    come late in simulated time, when the robot is already on its way. So would a node that takes seconds to
-    start.
+    A program takes wall time to start: with a faster simulation it would come late in simulated time, when
+    the robot is already on its way.
 
     Args:
         speed: Multiple of real time without the limit; 0 for no limit.
@@ -25,20 +24,20 @@ class RealTimeLimit:
         self._free = speed
         self._limited = speed if 0.0 < speed < REAL_TIME else REAL_TIME
         self._set_speed = set_speed
-        self._latest_sleep = self._latest_window = 0.0
+        self._latest_start = self._latest_window = 0.0
         self._is_limited = False
 
     def start(self, now: float) -> None:
         """Limit the speed from the start of the script on, at a wall time [s]."""
-        self._latest_sleep = self._latest_window = now
+        self._latest_start = self._latest_window = now
         self._apply(True)
 
     def update(self, now: float, is_starting: bool, has_new_window: bool) -> None:
-        """Adapt the speed to whether scripts sleep or nodes start at a wall time [s]."""
-        self._latest_sleep = now if is_starting else self._latest_sleep
+        """Adapt the speed to whether programs start at a wall time [s]."""
+        self._latest_start = now if is_starting else self._latest_start
         self._latest_window = now if has_new_window else self._latest_window
-        sleeps = now - self._latest_sleep < PAUSE_SECONDS
-        self._apply(sleeps and now - self._latest_window < NO_MORE_WINDOWS_SECONDS)
+        starts = now - self._latest_start < PAUSE_SECONDS
+        self._apply(starts and now - self._latest_window < NO_MORE_WINDOWS_SECONDS)
 
     def _apply(self, is_limited: bool) -> None:
         if is_limited != self._is_limited and self._limited != self._free:

@@ -7,6 +7,7 @@ from typing import List, Optional
 
 import rospy
 
+from rospy_transport.node import end_registration_at_shutdown
 from run_project.stand_ins import without_stand_ins
 from run_project.stand_ins.rviz_topics import displayed_topics
 
@@ -19,6 +20,7 @@ def main() -> None:
     if os.environ.get(RVIZ_VARIABLE):
         os.execvpe("rviz", ["rviz", *sys.argv[1:]], without_stand_ins(os.environ))
     rospy.init_node("rviz", anonymous=True)
+    end_registration_at_shutdown()
     config = config_file(rospy.myargv()[1:])
     text = ""
     if config is not None:

@@ -1,7 +1,7 @@
 """Observer of a project: its topics as run events, wherever the project publishes them."""
 
 import struct
-from typing import Callable, FrozenSet, Iterator, Set
+from typing import Callable, Iterator, Set
 
 import rosgraph
 import rospy
@@ -23,6 +23,8 @@ from evaluation.ros.run_topics import (
     RunTopics,
 )
 from run_project.judging.run_record import ProjectRunRecord
+from run_project.ros.graph_nodes import GraphNodes
+from supervision.ros.node_api import pid_of
 
 # Size of seq and stamp at the start of a serialized header: they differ between otherwise equal messages.
 CHANGING_BYTES = struct.calcsize("<III")
@@ -43,7 +45,7 @@ class Observer:
         events: The events.
         record: Goals, markers, contacts and distance of the run.
         has_goal_clients: Whether a node of the project can send goals.
-        nodes: Names of the nodes that publish.
+        nodes: The nodes that publish.
     """
 
     def __init__(self, log_event: Callable[[str], None]):
@@ -51,7 +53,7 @@ class Observer:
         self.record = ProjectRunRecord(lambda text: log_event(f"{self.simulated_time:7.1f} s  {text}"))
         self.record.attach(self.events)
         self.has_goal_clients = False
-        self.nodes: FrozenSet[str] = frozenset()
+        self.nodes = GraphNodes(pid_of)
         self._topics = RunTopics(self.events, timekeeper=ClockAdvanced)
         self._seen: Set[str] = set()
         self._goal_topics: Set[str] = set()
@@ -78,7 +80,7 @@ class Observer:
         """Subscribe to goal, result and marker topics that are new on the master."""
         master = rosgraph.Master("/run_project")
         publishers, _, _ = master.getSystemState()
-        self.nodes = frozenset(node for _, nodes in publishers for node in nodes)
+        self.nodes.update(node for _, nodes in publishers for node in nodes)
         of_project = {topic for topic, nodes in publishers if not ROBOT_NODES.issuperset(nodes)}
         for topic, kind in master.getTopicTypes():
             follow = {

@@ -4,18 +4,24 @@ import contextlib
 import subprocess
 import time
 from pathlib import Path
-from typing import Collection, Dict, List, NamedTuple, Sequence, Tuple
+from typing import Dict, List, NamedTuple, Sequence, Tuple
 
 import psutil
+
+from run_project.stand_ins import STAND_INS
 
 # A process busy-waits if its main thread uses this share of a core for this time [s] and gives it up less
 # often than this within a second of it: one that also waits for messages does so more often.
 BUSY_CPU_SHARE, BUSY_SECONDS, RESTS_PER_CPU_SECOND = 0.3, 5.0, 5.0
 BUSY_NICENESS = 15
-# Ages at which a launcher without processes, or a node that is not in the graph, and any other node, whose
-# name is not known, no longer count as starting [s].
+# Ages at which a launcher without processes, or a node that it has started, and any other program that is not
+# in the graph no longer count as starting [s].
 NODE_SECONDS, PROGRAM_SECONDS = 30.0, 3.0
 SHELLS = ("", "bash", "sh", "dash", "zsh")
+# A wait of one thread from which on it counts as long [s]: those of roscpp and rospy last half a second.
+LONG_SLEEP_SECONDS = 1.0
+# Numbers of system calls on x86-64 and ARM: sleeps; waits for files; waits for other threads.
+SLEEPS, SELECTS, FUTEXES = ("35", "230", "101", "115"), ("23", "270", "72"), ("202", "98")
 
 
 class ListedProcess(NamedTuple):
@@ -98,20 +104,57 @@ def program_of(command: List[str]) -> str:
     return command[1] if name.startswith("python") and len(command) > 1 else "".join(command[:1])
 
 
-def starting_seconds(
-    command: List[str], has_children: bool, is_of_project: bool, nodes: Collection[str]
-) -> float:
+def starting_seconds(each: ListedProcess, has_children: bool, is_node: bool) -> float:
     """Return the age up to which a process counts as starting [s].
 
     Args:
-        command: Its command line.
+        each: The process.
         has_children: Whether it has started others.
-        is_of_project: Whether its program is one of the project.
-        nodes: Names of the nodes in the graph.
+        is_node: Whether it is a node of the graph.
     """
-    names = [word.partition(":=")[2] for word in command if word.startswith("__name:=")]
-    if names:  # of a node that roslaunch has started
-        return 0.0 if any(node.rpartition("/")[2] == names[-1] for node in nodes) else NODE_SECONDS
-    if any(Path(word).name == "roslaunch" for word in command[:2]):
-        return 0.0 if has_children else NODE_SECONDS
-    return PROGRAM_SECONDS if is_of_project else 0.0
+    if has_children or is_node:
+        return 0.0
+    is_launched = any(word.startswith("__name:=") for word in each.command)
+    if is_launched or any(Path(word).name == "roslaunch" for word in each.command[:2]):
+        return NODE_SECONDS
+    program = program_of(each.command)
+    return PROGRAM_SECONDS if program and Path(program).parent != STAND_INS / "bin" else 0.0
+
+
+class WallSleeps:
+    """Finds processes with a thread that sleeps for long by wall time: what they do next may still come."""
+
+    def __init__(self, proc: Path = Path("/proc")):
+        self._proc = proc
+        self._resting: Dict[Tuple[int, str], Tuple[str, float]] = {}
+
+    def are_any(self, processes: Sequence[psutil.Process], now: float) -> bool:
+        """Return whether a thread has been in one sleep for long, at a wall time [s]; call it repeatedly."""
+        present = {
+            (process.pid, thread.name): thread
+            for process in processes
+            for thread in self._proc.glob(f"{process.pid}/task/*")
+        }
+        before, self._resting = self._resting, {}
+        for key, thread in present.items():
+            with contextlib.suppress(OSError):  # it has ended
+                state = _timed_wait(thread)
+                if state:
+                    known = before.get(key)
+                    self._resting[key] = known if known and known[0] == state else (state, now)
+        return any(now - since > LONG_SLEEP_SECONDS for _, since in self._resting.values())
+
+
+def _timed_wait(thread: Path) -> str:
+    """What identifies the sleep of a thread, or its wait with a limit for another; empty if it is in none."""
+    try:
+        text = (thread / "syscall").read_text()
+    except PermissionError:
+        return "unknown"
+    number, *arguments = text.split()
+    if number in SELECTS:
+        is_timed = int(arguments[0], 16) == 0  # of no file: a sleep
+    else:
+        is_timed = number in SLEEPS or (number in FUTEXES and int(arguments[3], 16) != 0)
+    lines = (thread / "status").read_text().splitlines()
+    return text + next(line for line in lines if line.startswith("voluntary")) if is_timed else ""

@@ -13,11 +13,15 @@ from typing import Dict, List, Mapping, Optional, Sequence, Set, Tuple
 import psutil
 import rospy
 
+from evaluation.preload import preload_nodes
+from rospy_transport.node import end_registration_at_shutdown
+from run_project.judging.run_end import GONE_SECONDS, Quiet, is_over
 from run_project.real_time_limit import RealTimeLimit
 from run_project.ros.observer import Observer
 from run_project.ros.processes import (
     BusyProcesses,
     ListedProcess,
+    WallSleeps,
     list_processes,
     program_of,
     starting_seconds,
@@ -25,6 +29,8 @@ from run_project.ros.processes import (
 )
 from run_project.ros.scripted_user import ScriptedUser
 from run_project.ros.simulator_speed import SimulatorSpeed
+from run_project.script_sleeps import ScriptSleeps
+from run_project.stand_ins.sleep import SOCKET_VARIABLE
 from run_project.stand_ins.terminal import WindowLogs
 from supervision.display import Display
 from supervision.errors import LaunchError
@@ -36,16 +42,6 @@ POLL_SECONDS = 0.2
 MASTER_SECONDS = 30.0
 ENTER_SECONDS = 5.0
 SIGINT_SECONDS = 4.0
-# Time without processes after which they count as gone: a list is not made in one moment.
-GONE_SECONDS = 1.0
-# Time without events after which a run is over. SETTLED: no process of the project is left; IDLE: no goal is
-# active.
-SETTLED_SECONDS = 3.0
-IDLE_WALL_SECONDS, IDLE_SIMULATED_SECONDS = 25.0, 30.0
-# No goal is active and no node is left that could send one; a marker may still move.
-NO_CLIENT_WALL_SECONDS, NO_CLIENT_SIMULATED_SECONDS = 8.0, 10.0
-# Before the first goal.
-FIRST_GOAL_WALL_SECONDS, FIRST_GOAL_SIMULATED_SECONDS = 90.0, 60.0
 # Wall time in which simulated time must advance.
 STALLED_SECONDS = 90.0
 # Program in the project's workspace that runs whenever the workspace is sourced: not a node.
@@ -68,7 +64,7 @@ class ProjectCommand:
     folder: Path
     environment: Mapping[str, str]
     work: Path
-    prefix: Sequence[str] = ()
+    prefix: Tuple[str, ...] = ()
 
 
 class ProjectRun:
@@ -94,14 +90,19 @@ class ProjectRun:
         self._parameters = parameters
         self.observer = Observer(self._log_event)
         self.user = None if procedure is None else ScriptedUser(procedure, logs.parent, self._log_event)
-        self._helpers: List[subprocess.Popen] = []
+        self._helpers: List[subprocess.Popen[bytes]] = [preload_nodes(command.prefix)]
+        self._recorder: List[psutil.Process] = []
         self._waiting_for_input: Set[int] = set()
         self._windows = WindowLogs(logs)
         self._last_event_wall = self._process_wall = time.monotonic()
         self._node_wall = math.inf
         self.is_over_time = False
-        self._busy = BusyProcesses()
+        self._busy, self._wall_sleeps = BusyProcesses(), WallSleeps()
         self._limit = RealTimeLimit(float(str(parameters["/gazebo/speed"])), SimulatorSpeed().set)
+        self._sleeps = ScriptSleeps(
+            lambda: self.observer.simulated_time,
+            lambda: self._limit.update(time.monotonic(), is_starting=True, has_new_window=False),
+        )
 
     def __enter__(self) -> "ProjectRun":
         adopt_orphans()
@@ -109,14 +110,17 @@ class ProjectRun:
         os.environ["ROS_MASTER_URI"] = f"http://127.0.0.1:{port}"
         os.environ["ROS_LOG_DIR"] = str(self._logs / "ros")
         try:
-            self._start_helper("master", ["roscore", "--port", str(port)])
+            self._start_helper("master", ["rosmaster", "--core", "-p", str(port)])
             self._wait_for_master()
+            self._start_helper("rosout", ["rosrun", "rosout", "rosout"])
             for name, value in self._parameters.items():
                 rospy.set_param(name, value)
             rospy.init_node("run_project", anonymous=True, disable_signals=True, log_level=rospy.ERROR)
+            end_registration_at_shutdown()
             if self.user is not None:
                 self.user.attach(self.observer.events, self.observer.record.alignment)
             self.observer.start()
+            self._sleeps.__enter__()
             if self.user is not None:
                 self.user.start()
         except BaseException:
@@ -127,26 +131,21 @@ class ProjectRun:
     def __exit__(self, *_):
         if self.user is not None:
             self.user.stop()
+        self._sleeps.__exit__()
         rospy.signal_shutdown("the run is over")
-        others = [each.process for each in list_processes(self._helpers)]
-        for process in others:
-            with contextlib.suppress(psutil.NoSuchProcess):
-                process.send_signal(signal.SIGINT)
-        psutil.wait_procs(others, SIGINT_SECONDS)
-        for helper in self._helpers:
-            helper.send_signal(signal.SIGINT)
-        psutil.wait_procs(psutil.Process().children(recursive=True), SIGINT_SECONDS)
+        _interrupt([each.process for each in list_processes(self._helpers)])
+        _interrupt(list(self._recorder))
         end_descendants(2.0)
 
     def environment(self) -> Dict[str, str]:
         """Environment for programs that join the project's graph."""
         own = {name: os.environ[name] for name in ("ROS_MASTER_URI", "ROS_LOG_DIR")}
-        return {**self._project_command.environment, **own}
+        return {**self._project_command.environment, **own, SOCKET_VARIABLE: self._sleeps.address}
 
     def record(self, bag: Path) -> None:
         """Start recording all topics except images into a bag."""
         command = ["rosbag", "record", "--all", "--exclude", "(.*)camera(.*)", "--output-name", str(bag)]
-        self._start_helper("record", command)
+        self._recorder = [psutil.Process(self._start_helper("record", command).pid)]
 
     def watch(self, timeout: float) -> Optional[str]:
         """Run the script until its work is done.
@@ -169,7 +168,9 @@ class ProjectRun:
             for window in windows:
                 self._log_event(f"{observer.simulated_time:7.1f} s  window {window}")
             listed, processes = self._list_processes(now)
-            self._limit.update(now, self._is_something_starting(listed), bool(windows))
+            is_starting = self._is_something_starting(listed)
+            self._limit.update(now, is_starting, bool(windows))
+            self._sleeps.update(is_starting)
             self._display.show(observer.status())
             if observer.simulated_time != moved_time:
                 moved_wall, moved_time = now, observer.simulated_time
@@ -178,7 +179,7 @@ class ProjectRun:
                 _press_enter(script)
             self._busy.lower_priority(processes, now)
             self._report_waiting_programs(processes)
-            if self._is_done(script.poll() is not None, now):
+            if self._is_done(script.poll() is not None, now, processes):
                 return self._script_failure(script.poll())
             if now > deadline:
                 self.is_over_time = True
@@ -200,22 +201,19 @@ class ProjectRun:
         self._node_wall = now if nodes else self._node_wall
         return listed, nodes
 
-    def _is_done(self, script_is_over: bool, now: float) -> bool:
-        record, quiet_wall = self.observer.record, now - self._last_event_wall
+    def _is_done(self, script_is_over: bool, now: float, processes: List[psutil.Process]) -> bool:
         if self.user is not None:
             return self.user.is_done
-        if (script_is_over and now - self._process_wall > GONE_SECONDS) or record.goals_of_two_rounds:
-            return True
-        if script_is_over and now - self._node_wall > GONE_SECONDS:
-            return quiet_wall > (SETTLED_SECONDS if record.goals or record.markers else IDLE_WALL_SECONDS)
-        quiet_simulated = self.observer.simulated_time - record.last_event_time
-        if record.goals:
-            enough_wall, enough_simulated = IDLE_WALL_SECONDS, IDLE_SIMULATED_SECONDS
-            if not self.observer.has_goal_clients and not record.is_object_picked_up:
-                enough_wall, enough_simulated = NO_CLIENT_WALL_SECONDS, NO_CLIENT_SIMULATED_SECONDS
-            return record.all_goals_ended and quiet_wall > enough_wall and quiet_simulated > enough_simulated
-        # A goal may still come: starting localization and navigation takes long under load.
-        return quiet_wall > FIRST_GOAL_WALL_SECONDS and quiet_simulated > FIRST_GOAL_SIMULATED_SECONDS
+        record, observer = self.observer.record, self.observer
+        return is_over(
+            record,
+            Quiet(now - self._last_event_wall, observer.simulated_time - record.last_event_time),
+            script_is_over=script_is_over,
+            has_processes=now - self._process_wall <= GONE_SECONDS,
+            has_nodes=now - self._node_wall <= GONE_SECONDS,
+            has_goal_clients=observer.has_goal_clients,
+            is_one_sleeping=record.all_goals_ended and self._wall_sleeps.are_any(processes, now),
+        )
 
     def _script_failure(self, code: Optional[int]) -> Optional[str]:
         """Why a script failed before it sent a goal or showed a marker: exit code and last line."""
@@ -237,17 +235,17 @@ class ProjectRun:
         self._last_event_wall = time.monotonic()
         self._display.print(event)
 
-    def _start_helper(self, name: str, command: List[str]) -> None:
+    def _start_helper(self, name: str, command: List[str]) -> "subprocess.Popen[bytes]":
         with (self._logs / f"{name}.log").open("w") as log:
-            self._helpers.append(
-                subprocess.Popen(
-                    command,
-                    stdin=subprocess.DEVNULL,
-                    stdout=log,
-                    stderr=subprocess.STDOUT,
-                    start_new_session=True,
-                )
+            helper = subprocess.Popen(
+                command,
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
             )
+        self._helpers.append(helper)
+        return helper
 
     def _start_script(self) -> "subprocess.Popen[bytes]":
         with (self._logs / "script.log").open("w") as log:
@@ -264,28 +262,35 @@ class ProjectRun:
     def _wait_for_master(self) -> None:
         deadline = time.monotonic() + MASTER_SECONDS
         while not is_master_online():
-            if time.monotonic() > deadline or self._helpers[0].poll() is not None:
+            if time.monotonic() > deadline or self._helpers[-1].poll() is not None:
                 raise LaunchError(f"no ROS master came up, see {self._logs / 'master.log'}")
             time.sleep(0.05)
 
     def _is_something_starting(self, listed: Sequence[ListedProcess]) -> bool:
-        """Whether a script sleeps, or a program has been started that is not yet a node of the graph."""
+        """Whether a script sleeps by wall time, or a program runs that may become a node of the graph."""
         parents = {each.parent for each in listed}
         return any(
             each.name == "sleep"
-            or each.age
-            < starting_seconds(
-                each.command,
-                each.process.pid in parents,
-                self._is_of_project(each.command),
-                self.observer.nodes,
-            )
+            or each.age < starting_seconds(each, each.process.pid in parents, self._is_node(each))
             for each in listed
         )
+
+    def _is_node(self, each: ListedProcess) -> bool:
+        """Whether a process is in the graph: by its number, or by its name if it was forked elsewhere."""
+        names = {word.partition(":=")[2] for word in each.command if word.startswith("__name:=")}
+        return each.process.pid in self.observer.nodes.pids or not names.isdisjoint(self.observer.nodes.names)
 
     def _is_of_project(self, command: List[str]) -> bool:
         program = program_of(command)
         return str(self._project_command.work) in program and not program.endswith(SETUP_TOOL)
+
+
+def _interrupt(processes: List[psutil.Process]) -> None:
+    """Send SIGINT to processes, and wait for their end."""
+    for process in processes:
+        with contextlib.suppress(psutil.NoSuchProcess):
+            process.send_signal(signal.SIGINT)
+    psutil.wait_procs(processes, SIGINT_SECONDS)
 
 
 def _press_enter(script: "subprocess.Popen[bytes]") -> None:

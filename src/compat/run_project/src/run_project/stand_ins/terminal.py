@@ -12,7 +12,7 @@ LOG_FOLDER_VARIABLE = "RUN_PROJECT_LOGS"
 # Input for windows: lines of WINDOW=TEXT.
 INPUT_VARIABLE = "RUN_PROJECT_TYPED"
 # Other logs in the same folder.
-NOT_WINDOWS = ("build", "master", "record", "script")
+NOT_WINDOWS = ("build", "master", "record", "rosout", "script")
 
 
 def main(terminal: str, arguments: List[str]) -> None:

@@ -1,0 +1,107 @@
+"""Sleeping of a project's scripts by simulated time.
+
+Authors separate windows by ``sleep``, for a simulation that runs in real time. Here it may run faster, or
+slower on a busy machine: the next window opens at the same simulated time as with theirs.
+"""
+
+import contextlib
+import math
+import shutil
+import socketserver
+import tempfile
+import threading
+import time
+from pathlib import Path
+from typing import Callable, Optional
+
+POLL_SECONDS = 0.01
+# Wall time without a step of the clock after which no simulation runs [s].
+STANDSTILL_SECONDS = 1.0
+# Reports in succession without a program that starts, from which on all that were started have come up: the
+# first may be older than the sleep.
+QUIET_REPORTS = 2
+MAX_REQUEST_BYTES = 64
+
+
+class ScriptTime:
+    """Time that passes for a script: simulated while a simulation runs, else wall time.
+
+    Args:
+        wall: Wall time at the start [s].
+        simulated: Simulated time at the start [s].
+    """
+
+    def __init__(self, wall: float, simulated: float):
+        self._wall, self._simulated = wall, simulated
+        self._latest_step = -math.inf
+        self._elapsed = 0.0
+
+    def update(self, wall: float, simulated: float) -> float:
+        """Return the time since the start [s], at a wall time and a simulated time [s]."""
+        if simulated > self._simulated:
+            self._elapsed += simulated - self._simulated
+            self._latest_step = wall
+        elif wall - self._latest_step > STANDSTILL_SECONDS:
+            self._elapsed += wall - self._wall
+        self._wall, self._simulated = wall, simulated
+        return self._elapsed
+
+
+class ScriptSleeps:
+    """Serves the stand-in for ``sleep``: context in which scripts sleep by simulated time.
+
+    Before simulated time begins they sleep until the programs started so far have come up, and not longer
+    than they want.
+
+    Args:
+        simulated_time: Returns the simulated time [s].
+        on_end: Called before each end of a sleep.
+
+    Attributes:
+        address: Path of the socket.
+    """
+
+    def __init__(self, simulated_time: Callable[[], float], on_end: Callable[[], None]):
+        self._simulated_time, self._on_end = simulated_time, on_end
+        self._is_over = threading.Event()
+        self._quiet_reports = 0
+        self._folder = ""
+        self._server: Optional[socketserver.ThreadingUnixStreamServer] = None
+        self.address = ""
+
+    def __enter__(self) -> "ScriptSleeps":
+        sleeps = self
+
+        class Handler(socketserver.StreamRequestHandler):
+            def handle(self) -> None:
+                with contextlib.suppress(ValueError, OSError):
+                    sleeps.sleep(float(self.rfile.readline(MAX_REQUEST_BYTES)))
+
+        self._folder = tempfile.mkdtemp(prefix="run_project_")
+        self.address = str(Path(self._folder, "sleeps"))
+        self._server = socketserver.ThreadingUnixStreamServer(self.address, Handler)
+        self._server.daemon_threads = True
+        threading.Thread(target=self._server.serve_forever, args=(POLL_SECONDS,), daemon=True).start()
+        return self
+
+    def __exit__(self, *_) -> None:
+        self._is_over.set()
+        if self._server is not None:
+            self._server.shutdown()
+            self._server.server_close()
+        shutil.rmtree(self._folder, ignore_errors=True)
+
+    def update(self, is_starting: bool) -> None:
+        """Report whether programs are starting."""
+        self._quiet_reports = 0 if is_starting else self._quiet_reports + 1
+
+    def sleep(self, seconds: float) -> None:
+        """Wait for a time [s], or until the context is left."""
+        self._quiet_reports = 0
+        elapsed = ScriptTime(time.monotonic(), self._simulated_time())
+        while elapsed.update(time.monotonic(), self._simulated_time()) < seconds:
+            if self._simulated_time() == 0.0 and self._quiet_reports >= QUIET_REPORTS:
+                break
+            if self._is_over.wait(POLL_SECONDS):
+                return
+        self._on_end()

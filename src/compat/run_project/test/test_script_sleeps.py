@@ -1,0 +1,107 @@
+"""The sleep of scripts lasts for simulated time."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import pytest
+
+from run_project.script_sleeps import STANDSTILL_SECONDS, ScriptSleeps, ScriptTime
+from run_project.stand_ins import STAND_INS
+from run_project.stand_ins.sleep import SOCKET_VARIABLE, seconds_of
+
+LIMIT_SECONDS = 60.0
+
+
+def test_wall_time_passes_until_a_simulation_runs_and_simulated_time_from_then_on():
+    elapsed = ScriptTime(100.0, 0.0)
+    assert elapsed.update(102.0, 0.0) == pytest.approx(2.0)
+    assert elapsed.update(102.1, 0.5) == pytest.approx(2.5)
+    assert elapsed.update(102.2, 0.5) == pytest.approx(2.5)
+    assert elapsed.update(102.3, 2.5) == pytest.approx(4.5)
+
+
+def test_a_simulation_that_stands_still_does_not_stop_a_script():
+    elapsed = ScriptTime(0.0, 7.0)
+    elapsed.update(0.1, 8.0)
+    stopped = [elapsed.update(0.1 + 0.1 * step, 8.0) for step in range(1, 31)]
+    assert stopped[int(STANDSTILL_SECONDS / 0.1) - 1] == pytest.approx(1.0)
+    assert stopped[-1] == pytest.approx(1.0 + 3.0 - STANDSTILL_SECONDS, abs=0.11)
+
+
+def test_a_clock_that_is_set_back_takes_nothing_away():
+    elapsed = ScriptTime(0.0, 50.0)
+    elapsed.update(0.1, 52.0)
+    assert elapsed.update(0.2, 0.0) == pytest.approx(2.0)
+    assert elapsed.update(0.3, 1.0) == pytest.approx(3.0)
+
+
+@pytest.mark.parametrize(
+    ("words", "seconds"),
+    [
+        (["5"], 5.0),
+        ([".5"], 0.5),
+        (["1m", "2.5"], 62.5),
+        (["2h"], 7200.0),
+        (["infinity"], None),
+        (["--help"], None),
+        (["five"], None),
+        (["-1"], None),
+        ([], None),
+    ],
+)
+def test_durations_are_those_of_the_real_program(words, seconds):
+    assert seconds_of(words) == seconds
+
+
+def environment(**variables):
+    path = {
+        "PATH": f"{STAND_INS / 'bin'}:{os.environ['PATH']}",
+        "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
+    }
+    return {**os.environ, **path, **variables}
+
+
+def test_a_script_continues_when_the_simulated_time_has_passed():
+    clock, ends = [3.0], []
+    with ScriptSleeps(lambda: clock[0], lambda: ends.append(clock[0])) as sleeps:
+        script = subprocess.Popen(
+            ["sh", "-c", "sleep 1000 && sleep 500"], env=environment(**{SOCKET_VARIABLE: sleeps.address})
+        )
+        deadline = time.monotonic() + LIMIT_SECONDS
+        while script.poll() is None and time.monotonic() < deadline:
+            clock[0] += 1.0
+            time.sleep(0.001)
+        assert script.poll() == 0
+    assert len(ends) == 2
+    assert ends[0] >= 1003.0
+    assert ends[1] - ends[0] >= 500.0
+
+
+def test_the_end_of_the_run_ends_a_sleep():
+    with ScriptSleeps(lambda: 0.0, lambda: None) as sleeps:
+        sleeper = threading.Thread(target=sleeps.sleep, args=(1e6,))
+        sleeper.start()
+    sleeper.join(LIMIT_SECONDS)
+    assert not sleeper.is_alive()
+
+
+@pytest.mark.parametrize("variables", [{}, {SOCKET_VARIABLE: "/absent/socket"}])
+def test_without_a_run_it_is_the_real_program(variables):
+    done = subprocess.run(
+        ["sleep", "--version"], env=environment(**variables), capture_output=True, check=True
+    )
+    assert b"coreutils" in done.stdout
+    begun = time.monotonic()
+    subprocess.run(["sleep", "0.2"], env=environment(**variables), check=True)
+    assert time.monotonic() - begun >= 0.2
+
+
+def test_a_signal_ends_it_as_it_ends_the_real_program():
+    with ScriptSleeps(lambda: 0.0, lambda: None) as sleeps:
+        sleep = subprocess.Popen(["sleep", "1000"], env=environment(**{SOCKET_VARIABLE: sleeps.address}))
+        sleep.terminate()
+        assert sleep.wait(LIMIT_SECONDS) == -signal.SIGTERM
