@@ -256,13 +256,17 @@ def test_a_thread_that_hands_over_to_one_that_was_read_before_hides_it_once(tmp_
     assert [threads.are_resting(), threads.are_resting()] == [True, False]
 
 
-def test_threads_that_wait_at_each_look_but_take_time_in_between_do_not_rest(tmp_path):
+@pytest.mark.parametrize(("program", "is_at_rest"), [("/usr/bin/python3", False), ("/opt/ros/amcl", True)])
+def test_threads_that_wait_at_each_look_but_take_time_in_between_do_not_rest(tmp_path, program, is_at_rest):
+    """Those of roscpp may look at the clock in between."""
     stat = tmp_path / "7" / "task" / "7" / "stat"
     stat.parent.mkdir(parents=True)
     stat.write_bytes(b"7 (node) S 1")
-    times = iter([(0.0, 0.0), (LOOK, 0.8 * LOOK), (2.0 * LOOK, 0.82 * LOOK)])
+    (tmp_path / "7" / "exe").symlink_to(program)
+    used = [0.0, 0.8 * LOOK, 0.82 * LOOK, 0.82 * LOOK]
+    times = iter((number * LOOK, seconds) for number, seconds in enumerate(used))
     threads = ProcessThreads(7, tmp_path, lambda: next(times))
-    assert [threads.are_resting() for _ in range(3)] == [True, False, True]
+    assert [threads.are_resting() for _ in range(4)] == [True, False, is_at_rest, True]
 
 
 # Eight threads that wait for ever, and with "poll" one that looks at a clock each millisecond.

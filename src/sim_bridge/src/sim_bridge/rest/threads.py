@@ -22,8 +22,9 @@ SLEEPS = (b"35", b"230", b"101", b"115")
 # Links of a folder without threads.
 FOLDER_LINKS = 2
 # Processor time that threads take which only look at the clock: share of the time between two looks at the
-# process, and time beyond that [s].
+# process, and time beyond that [s]; and what a process takes that has rested in between, by the kernel's rounding.
 IDLE_SHARE, IDLE_SECONDS = 0.25, 5e-5
+REST_SECONDS = 2e-6
 
 
 class ProcessThreads:
@@ -46,13 +47,15 @@ class ProcessThreads:
         self._at_rest: Optional[Tuple[float, float]] = None
         self._is_backward = False
         self._polling = PollingThreads(self._folder) if is_native(pid, proc) else None
+        self._polls = self._polling is not None
 
     def may_poll(self) -> bool:
         """Return whether a thread may look at the clock again and again, and learn it at this barrier.
 
         Threads of Python wait for the clock itself.
         """
-        return self._polling is not None and self._polling.may_be_any(self._names())
+        self._polls = self._polling is not None and self._polling.may_be_any(self._names())
+        return self._polls
 
     def stop_watching(self) -> None:
         """Learn no more at this barrier: threads may run for another reason before the next look."""
@@ -60,7 +63,7 @@ class ProcessThreads:
             self._polling.stop_watching()
 
     def are_resting(self) -> bool:
-        """Return whether all threads wait, and have hardly run since the last call if they waited then, too.
+        """Return whether all threads wait, and have not run since the last call if they waited then, too.
 
         Each call reads them in the order opposite to that of the last: a thread may hand over to one that was
         read before, and then wait. Two that hand over to each other again and again may escape both, but not
@@ -81,7 +84,7 @@ class ProcessThreads:
         if before is None:
             return True
         wall, processor = (now - then for now, then in zip(self._at_rest, before))
-        return processor <= IDLE_SHARE * wall + IDLE_SECONDS
+        return processor <= (IDLE_SHARE * wall + IDLE_SECONDS if self._polls else REST_SECONDS)
 
     def close(self) -> None:
         """Close the files of the threads."""
