@@ -22,7 +22,7 @@ SLEEPS = (b"35", b"230", b"101", b"115")
 # Links of a folder without threads.
 FOLDER_LINKS = 2
 # Processor time that threads take which only look at the clock: share of the time between two looks at the
-# process, and time beyond that [s]; and what a process takes that has rested in between, by the kernel's rounding.
+# process, and time beyond that [s]; and the greatest for a process that has rested in between.
 IDLE_SHARE, IDLE_SECONDS = 0.25, 5e-5
 REST_SECONDS = 2e-6
 
