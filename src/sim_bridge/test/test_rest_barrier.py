@@ -340,6 +340,13 @@ def test_a_thread_that_runs_between_two_barriers_only_does_not_look_at_the_clock
     assert threads.may_be_any(["8"]), "it sleeps"
 
 
+def test_the_threads_of_a_process_with_the_library_take_turns(tmp_path):
+    (tmp_path / "7").mkdir()
+    (tmp_path / "7" / "environ").write_bytes(b"HOME=/root\0LD_PRELOAD=/ws/devel/lib/libordered_wake.so\0")
+    assert ProcessThreads(7, tmp_path).take_turns
+    assert not ProcessThreads(8, tmp_path).take_turns
+
+
 def test_an_ended_process_is_noticed(program):
     process = program(REST)
     threads = ProcessThreads(process.pid)

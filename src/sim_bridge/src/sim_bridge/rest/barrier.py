@@ -6,6 +6,9 @@ from typing import Callable, Container, Dict, Mapping, Optional
 # Time for which all nodes must rest after a message of the clock [wall s], from a look at which they did, if
 # one has loops or timers of roscpp: these look at the clock each millisecond.
 POLLING_SECONDS = 0.0012
+# The same after a message of the clock if one has threads that take turns (preload/ordered_wake.cpp): they
+# wait for each other in short sleeps, as if they rested.
+TURNS_QUIET_SECONDS = 0.002
 # The same after other messages, and without such loops: receivers are ready to run when they have been sent.
 DATA_QUIET_SECONDS = 0.0003
 # The same before a message of the clock where nodes send each other messages, and before a tick: what one has

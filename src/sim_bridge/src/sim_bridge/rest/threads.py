@@ -11,6 +11,7 @@ WAITING_STATES = frozenset(b"SItTXZ")
 # Bytes of /proc/PID/task/TID/stat up to the state: two numbers and a name of at most 64 bytes.
 STAT_BYTES = 128
 PROC = Path("/proc")
+TURNS_LIBRARY = b"libordered_wake"
 # Time between two looks at a thread in which one that looks at the clock each millisecond has run [wall s],
 # and number of such pairs of looks after which a thread is known.
 WATCH_SECONDS, WATCHES = 0.0011, 20
@@ -34,12 +35,16 @@ class ProcessThreads:
         pid: Process.
         proc: Folder of the kernel's process information.
         times: Returns wall time and the processor time of the process [s].
+
+    Attributes:
+        take_turns: Whether the preloaded library has the threads run one after another.
     """
 
     def __init__(
         self, pid: int, proc: Path = PROC, times: Optional[Callable[[], Tuple[float, float]]] = None
     ):
         self.pid = pid
+        self.take_turns = _has_library(proc / str(pid))
         self._folder = proc / str(pid) / "task"
         self._files: Dict[str, int] = {}
         self._links = -1
@@ -184,6 +189,13 @@ class PollingThreads:
 def _state_in(stat: bytes) -> int:
     """Return the state in a stat file: it follows the name, which ends at the last bracket."""
     return stat[stat.rfind(b")") + 2]
+
+
+def _has_library(folder: Path) -> bool:
+    try:
+        return TURNS_LIBRARY in (folder / "environ").read_bytes()
+    except OSError:
+        return False
 
 
 def wake_promptly() -> None:

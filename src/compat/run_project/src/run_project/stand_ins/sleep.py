@@ -14,7 +14,7 @@ CONNECT_SECONDS = 5.0
 
 
 def main(arguments: List[str]) -> None:
-    """Sleep as the arguments say; outside a run, or for other arguments, the real program does it."""
+    """Sleep for the durations in the arguments; outside a run, or for others, the real program does it."""
     seconds = seconds_of(arguments)
     if seconds is None or not sleep_within_run(seconds, os.environ.get(SOCKET_VARIABLE, "")):
         os.execvpe("sleep", ["sleep", *arguments], without_stand_ins(os.environ))

@@ -15,6 +15,7 @@ from sim_bridge.rest.barrier import (
     PATIENCE_SECONDS,
     POLLING_SECONDS,
     SETTLING_QUIET_SECONDS,
+    TURNS_QUIET_SECONDS,
     AwaitedRest,
     RestBarrier,
 )
@@ -209,20 +210,13 @@ class PacedNodes:
     def _wait_for(self, chosen: Set[str], before: Before, is_clock_sent: bool) -> AwaitedRest:
         for name in chosen:
             self._threads[name].stop_watching()
-        is_clock_read = is_clock_sent and before is not Before.CLOCK
-        is_polled = False
+        quiet = _quiet(chosen, self._nodes, self._threads, before, is_clock_sent)
         if self._is_graph_new:
-            quiet = SETTLING_QUIET_SECONDS
-        elif is_clock_read and _may_poll(chosen, self._nodes, self._threads):
-            quiet, is_polled = POLLING_SECONDS, True
-        elif before is Before.TICK or before is Before.CLOCK and _are_sending(chosen, self._nodes):
-            quiet = BETWEEN_NODES_QUIET_SECONDS
-        else:
-            quiet = DATA_QUIET_SECONDS
+            quiet = SETTLING_QUIET_SECONDS, False
         nodes = {name: self._rest_of(name, self._threads[name]) for name in sorted(chosen, reverse=True)}
         nodes[SYNCHRONISED] = lambda: self._is_answered
         nodes[MESSAGES] = lambda: not has_undelivered(chosen)
-        return AwaitedRest(nodes, self._awaited() | {SYNCHRONISED, MESSAGES}, quiet, is_polled)
+        return AwaitedRest(nodes, self._awaited() | {SYNCHRONISED, MESSAGES}, *quiet)
 
     @property
     def pause(self) -> float:
@@ -328,6 +322,24 @@ def _sent(nodes: Mapping[str, FoundNode]) -> SentCounts:
         for receiver, topic, connection in outgoing()
     )
     return sent_counts(rows, {name: node.rule.keeps for name, node in nodes.items()})
+
+
+def _quiet(
+    chosen: Set[str],
+    nodes: Mapping[str, FoundNode],
+    threads: Mapping[str, ProcessThreads],
+    before: Before,
+    is_clock_sent: bool,
+) -> Tuple[float, bool]:
+    """Return for how long chosen nodes must rest [wall s], and whether from a look at which they do."""
+    if is_clock_sent and before is not Before.CLOCK:
+        if any(threads[name].take_turns for name in chosen):
+            return TURNS_QUIET_SECONDS, False
+        if _may_poll(chosen, nodes, threads):
+            return POLLING_SECONDS, True
+    if before is Before.TICK or before is Before.CLOCK and _are_sending(chosen, nodes):
+        return BETWEEN_NODES_QUIET_SECONDS, False
+    return DATA_QUIET_SECONDS, False
 
 
 def _may_poll(
