@@ -24,9 +24,9 @@ PACKAGE_XML = """<?xml version="1.0"?>
 </package>
 """
 NODE = """#!/usr/bin/env python3
-from planar_ros.node.entry import call
+from planar_ros.node.entry import {entry}
 
-call("{function}")
+{entry}("{function}")
 """
 CMAKE_LISTS = """# Made by docs/generate.py from src/compat/packages.yaml; do not edit.
 cmake_minimum_required(VERSION 3.0.2)
@@ -59,7 +59,7 @@ def alias_packages(folder: Path, version: str) -> Dict[Path, str]:
             name=name, version=version, description=TOOL, depends=depends
         )
         files[folder / name / "CMakeLists.txt"] = TOOL_CMAKE_LISTS.format(name=name)
-        files[folder / name / "nodes" / name] = NODE.format(function=TOOL_FUNCTION)
+        files[folder / name / "nodes" / name] = NODE.format(entry="call", function=TOOL_FUNCTION)
     for name, package in table["packages"].items():
         files.update(_package(folder / name, version, package))
     return files
@@ -77,9 +77,10 @@ def _package(folder: Path, version: str, package: Mapping[str, Any]) -> Iterator
             depends=_depends([("buildtool_depend", "catkin"), *depends]),
         ),
     )
-    nodes = package.get("nodes", {})
+    nodes = {**package.get("nodes", {}), **package.get("forked_nodes", {})}
     for name, function in nodes.items():
-        yield folder / "nodes" / name, NODE.format(function=function)
+        entry = "start_node" if name in package.get("forked_nodes", ()) else "call"
+        yield folder / "nodes" / name, NODE.format(entry=entry, function=function)
     rules = "\n".join(_rules(folder, list(nodes)))
     yield folder / "CMakeLists.txt", CMAKE_LISTS.format(name=folder.name) + (f"\n{rules}\n" if rules else "")
 
