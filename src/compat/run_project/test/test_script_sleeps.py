@@ -89,7 +89,7 @@ def test_the_end_of_the_run_ends_a_sleep():
     assert not sleeper.is_alive()
 
 
-@pytest.mark.parametrize("variables", [{}, {SOCKET_VARIABLE: "/absent/socket"}])
+@pytest.mark.parametrize("variables", [{}, {SOCKET_VARIABLE: "absent_socket"}])
 def test_without_a_run_it_is_the_real_program(variables):
     done = subprocess.run(
         ["sleep", "--version"], env=environment(**variables), capture_output=True, check=True

@@ -6,12 +6,11 @@ slower on a busy machine: the next window opens at the same simulated time as wi
 
 import contextlib
 import math
-import shutil
+import os
+import secrets
 import socketserver
-import tempfile
 import threading
 import time
-from pathlib import Path
 from typing import Callable, Optional
 
 POLL_SECONDS = 0.01
@@ -58,16 +57,15 @@ class ScriptSleeps:
         on_end: Called before each end of a sleep.
 
     Attributes:
-        address: Path of the socket.
+        address: Name of the socket, in Linux's abstract namespace.
     """
 
     def __init__(self, simulated_time: Callable[[], float], on_end: Callable[[], None]):
         self._simulated_time, self._on_end = simulated_time, on_end
         self._is_over = threading.Event()
         self._quiet_reports = 0
-        self._folder = ""
         self._server: Optional[socketserver.ThreadingUnixStreamServer] = None
-        self.address = ""
+        self.address = f"run_project_{os.getpid()}_{secrets.token_hex(8)}"
 
     def __enter__(self) -> "ScriptSleeps":
         sleeps = self
@@ -77,9 +75,7 @@ class ScriptSleeps:
                 with contextlib.suppress(ValueError, OSError):
                     sleeps.sleep(float(self.rfile.readline(MAX_REQUEST_BYTES)))
 
-        self._folder = tempfile.mkdtemp(prefix="run_project_")
-        self.address = str(Path(self._folder, "sleeps"))
-        self._server = socketserver.ThreadingUnixStreamServer(self.address, Handler)
+        self._server = socketserver.ThreadingUnixStreamServer(f"\0{self.address}", Handler)
         self._server.daemon_threads = True
         threading.Thread(target=self._server.serve_forever, args=(POLL_SECONDS,), daemon=True).start()
         return self
@@ -89,7 +85,6 @@ class ScriptSleeps:
         if self._server is not None:
             self._server.shutdown()
             self._server.server_close()
-        shutil.rmtree(self._folder, ignore_errors=True)
 
     def update(self, is_starting: bool) -> None:
         """Report whether programs are starting."""

@@ -7,7 +7,7 @@ from typing import List, Optional
 
 from run_project.stand_ins import without_stand_ins
 
-# Path of the run's socket.
+# Name of the run's socket, in Linux's abstract namespace.
 SOCKET_VARIABLE = "RUN_PROJECT_SLEEPS"
 UNITS = {"s": 1.0, "m": 60.0, "h": 3600.0, "d": 86400.0}
 CONNECT_SECONDS = 5.0
@@ -42,7 +42,7 @@ def sleep_within_run(seconds: float, address: str) -> bool:
     with socket.socket(socket.AF_UNIX) as connection:
         try:
             connection.settimeout(CONNECT_SECONDS)
-            connection.connect(address)
+            connection.connect(f"\0{address}")
             connection.sendall(f"{seconds!r}\n".encode())
             connection.settimeout(None)
             connection.recv(1)
