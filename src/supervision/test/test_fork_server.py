@@ -9,6 +9,7 @@ import socket
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import psutil
 import pytest
@@ -96,6 +97,21 @@ def test_a_forked_child_has_the_clients_command_line_environment_folder_streams_
     assert out == f"forked called word {tmp_path} text typed\n"
     assert error == "to stderr\n"
     assert process.returncode == 7
+
+
+def test_a_server_may_run_behind_other_words(modules, monkeypatch):
+    """As with other mounts."""
+    monkeypatch.setenv(FORK_SERVER, "")
+    process = start_fork_server(["program"], ["env", "OF_PREFIX=1"])
+    name = os.environ[FORK_SERVER]
+    try:
+        wait_until(lambda: is_there(name))
+        assert b"OF_PREFIX=1" in Path(f"/proc/{process.pid}/environ").read_bytes()
+        client = start(name, "program:draw")
+        assert float(client.communicate(timeout=SECONDS)[0]) >= 0.0
+    finally:
+        process.kill()
+        process.wait()
 
 
 @pytest.mark.parametrize("name", ["", "no_such_server"])

@@ -87,7 +87,7 @@ class NodeSearch:
             with_connections = self._is_requested.is_set()
             self._is_requested.clear()
             graph = self._check.graph()
-            self.changes += before is None or _has_more(graph, before)
+            self.changes += before is None or has_more(graph, before)
             before = graph
             names = {MASTER, *chain(*(chain(*table.values()) for table in graph))} - {rospy.get_name()}
             self._find_processes({name for name in names if not name.startswith(self._bystanders)})
@@ -142,7 +142,7 @@ class NodeSearch:
         return found
 
 
-def _has_more(graph: Tables, before: Tables) -> bool:
+def has_more(graph: Tables, before: Tables) -> bool:
     """Whether a graph has an entry that it had not before; a node that has gone connects to nothing."""
     return any(
         set(nodes).difference(earlier.get(name, ()))

@@ -1,0 +1,76 @@
+"""Nodes of the graph, who receives from whom, and when others may have to connect."""
+
+import os
+import time
+
+import pytest
+
+from sim_bridge.rest.rules import PaceRule
+from sim_bridge.ros.timing import node_search
+from sim_bridge.ros.timing.node_search import NodeSearch, has_more
+
+SECONDS = 10.0
+PUBLISHED = {"/tf": ["/amcl"], "/pose": ["/amcl"], "/view": ["/move_base"], "/rosout": ["/amcl", "/log"]}
+SUBSCRIBED = {
+    "/tf": ["/move_base", "/sim"],
+    "/pose": ["/amcl", "/viewer"],
+    "/view": ["/sim"],
+    "/rosout": ["/log"],
+    "/clock": ["/amcl", "/move_base", "/viewer", "/log"],
+}
+
+
+def table(**entries):
+    return {f"/{topic}": nodes.split() for topic, nodes in entries.items()}
+
+
+@pytest.mark.parametrize(
+    ("now", "expected"),
+    [
+        (table(tf="a b"), False),
+        (table(tf="a"), False),
+        ({}, False),
+        (table(tf="a b c"), True),
+        (table(tf="a b", odom="a"), True),
+    ],
+)
+def test_only_what_was_not_there_before_has_to_connect(now, expected):
+    before = table(tf="a b")
+    assert has_more(({}, now, {}), ({}, before, {})) == expected
+
+
+class Graph:
+    def graph(self):
+        return PUBLISHED, SUBSCRIBED, {}
+
+    def local_process(self, name):
+        return os.getpid()
+
+
+@pytest.fixture
+def search(monkeypatch):
+    ended = []
+    monkeypatch.setattr(node_search, "ConnectionCheck", Graph)
+    monkeypatch.setattr(node_search.rospy, "get_name", lambda: "/sim")
+    monkeypatch.setattr(node_search.rospy, "is_shutdown", lambda: bool(ended))
+    found = NodeSearch({"/viewer": PaceRule("observe")}, {}, ("/log",))
+    found.start()
+    deadline = time.monotonic() + SECONDS
+    while not found.finished and time.monotonic() < deadline:
+        time.sleep(0.01)
+    yield found
+    ended.append(True)
+
+
+def test_receivers_are_other_nodes_that_are_not_observers(search):
+    assert search.nodes["/amcl"].receivers == {"/move_base"}
+    assert search.nodes["/move_base"].receivers == set()
+
+
+def test_a_node_takes_part_if_another_one_or_the_simulator_receives_its_messages(search):
+    assert search.nodes["/move_base"].takes_part
+    assert not search.nodes["/viewer"].takes_part
+
+
+def test_bystanders_are_not_searched_for(search):
+    assert "/log" not in search.nodes
