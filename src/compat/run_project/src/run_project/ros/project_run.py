@@ -134,7 +134,7 @@ class ProjectRun:
         self._sleeps.__exit__()
         rospy.signal_shutdown("the run is over")
         _interrupt([each.process for each in list_processes(self._helpers)])
-        _interrupt(list(self._recorder))
+        _interrupt(self._recorder)
         end_descendants(2.0)
 
     def environment(self) -> Dict[str, str]:
