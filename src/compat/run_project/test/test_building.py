@@ -85,6 +85,46 @@ def test_a_dependency_on_message_targets_that_do_not_exist_is_ignored(tmp_path, 
     assert (outputs, workspace.unbuilt) == ([], set())
 
 
+@pytest.fixture
+def builds(tmp_path, monkeypatch):
+    """A function that copies and builds a project, and returns whether catkin_make was called."""
+    (tmp_path / "repo" / "pick").mkdir(parents=True)
+    (tmp_path / "repo" / "pick" / "package.xml").write_text("<package><name>pick</name></package>")
+    (tmp_path / "repo" / "pick" / "go.py").write_text("#!/usr/bin/env python\nprint 'go'\n")
+    outputs = []
+
+    def catkin_make(workspace, _):
+        (workspace.folder / "devel" / "setup.bash").touch()
+        calls.append(workspace)
+        return outputs[-1] if outputs else ""
+
+    def run(output=""):
+        outputs.append(output)
+        calls.clear()
+        placement = Placement(Path("src"), Path(), Path("src"), {})
+        workspace = copy_checkout(read_checkout(tmp_path / "repo"), placement, tmp_path / "work")
+        build(workspace, tmp_path / "build.log", lambda _: None)
+        assert "print('go')" in (workspace.checkout / "pick/go.py").read_text()
+        return bool(calls)
+
+    calls = []
+    monkeypatch.setattr(building, "_catkin_make", catkin_make)
+    return run
+
+
+def test_a_project_is_not_built_again_before_something_changes(builds, tmp_path):
+    assert [builds(), builds()] == [True, False]
+    (tmp_path / "repo" / "pick" / "new.py").write_text("")
+    assert [builds(), builds()] == [True, False]
+    (tmp_path / "work" / "devel" / "setup.bash").unlink()
+    assert builds()
+
+
+def test_a_project_is_built_again_after_a_build_that_was_not_complete(builds):
+    assert [builds("make: *** [pick] Error 1"), builds("make: *** [pick] Error 1")] == [True, True]
+    assert [builds(), builds()] == [True, False]
+
+
 def test_turtlebot3_model_has_a_default(tmp_path, monkeypatch):
     (tmp_path / "devel").mkdir()
     (tmp_path / "devel/setup.bash").touch()

@@ -13,6 +13,7 @@ from planar import PlanarError
 from run_project.checkout.layout import BUILD_AND_VCS_FOLDERS, Checkout
 from run_project.checkout.placement import Placement
 from run_project.checkout.substitutes import complete_package, link_substitutes
+from run_project.preparation.build_stamp import BuildStamp
 from run_project.preparation.python2 import to_python3
 from run_project.preparation.selection import select_packages
 from run_project.stand_ins import PACKAGE_FOLDER, STAND_INS
@@ -108,6 +109,8 @@ def copy_checkout(checkout: Checkout, placement: Placement, work: Path) -> Works
 def build(workspace: Workspace, log: Path, report: Callable[[str], None]) -> None:
     """Build the workspace; packages that fail are excluded and added to ``workspace.missing``.
 
+    Nothing is built if nothing has changed since the last build, and this was complete.
+
     Args:
         workspace: The project's copy.
         log: File to which the output of catkin_make is appended.
@@ -118,6 +121,8 @@ def build(workspace: Workspace, log: Path, report: Callable[[str], None]) -> Non
     """
     stand_ins = {folder.name: folder for folder in PACKAGE_FOLDER.parent.iterdir()}
     selection = select_packages(workspace.packages, stand_ins, is_installed)
+    work = workspace.placeholders.parent
+    stamp = BuildStamp(work / "built", work / "tree", selection.names())
     for name in selection.replaced:
         complete_package(workspace.packages[name], stand_ins[name], name in selection.without_parts)
     workspace.unbuilt.update(selection.replaced)
@@ -128,6 +133,10 @@ def build(workspace: Workspace, log: Path, report: Callable[[str], None]) -> Non
         _create_placeholder(workspace, name)
         report(f"  package {name} is not installed; built without it: {', '.join(users)}")
     _convert_python2(workspace, report)
+    if stamp.is_current and (workspace.folder / "devel" / "setup.bash").exists():
+        return
+    stamp.remove()
+    excluded = len(workspace.unbuilt)
     for _ in range(MAX_CONFIGURATIONS):
         output = _catkin_make(workspace, log)
         absent = set(_ABSENT_TARGET.findall(output)) - workspace.absent_targets
@@ -145,6 +154,8 @@ def build(workspace: Workspace, log: Path, report: Callable[[str], None]) -> Non
     broken = _broken_sources(workspace, output)
     workspace.missing.update(broken)
     _report_packages("not compiled:", broken, report)
+    if not (broken or _failed(output)) and len(workspace.unbuilt) == excluded:
+        stamp.write()
 
 
 def environment(workspace: Workspace) -> Dict[str, str]:

@@ -31,6 +31,11 @@ class PackageSelection:
     unbuilt: Dict[str, str]
     absent: Dict[str, List[str]]
 
+    def names(self) -> List[str]:
+        """Return the names in it, always in one order."""
+        parts = (self.replaced, self.without_parts, self.unbuilt, self.absent)
+        return [" ".join(sorted(part)) for part in parts]
+
 
 def select_packages(
     folders: Mapping[str, Path], stand_ins: Mapping[str, Path], is_installed: Callable[[str], bool]
