@@ -324,6 +324,26 @@ def test_threads_that_look_at_the_clock_are_learned(native_program, arguments, p
         process.wait()
 
 
+def test_a_thread_that_runs_beside_one_that_looks_at_the_clock_is_noticed(tmp_path):
+    """One that was read before may have handed it work for a shorter time than looks at the clock take."""
+    for name in ("8", "9"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "syscall").write_text("202 0x1")
+        (tmp_path / name / "schedstat").write_text("1 1 0")
+    threads = PollingThreads(tmp_path)
+    for step in range(2 * WATCHES):
+        threads.may_be_any(["8", "9"])
+        for look in range(2):
+            (tmp_path / "9" / "schedstat").write_text(f"1 1 {step}{look}")
+            threads.watch(step + 0.5 * look, ["8", "9"])
+        assert not threads.have_others_run()
+        threads.stop_watching()
+    assert threads.may_be_any(["8", "9"])
+    threads.watch(100.0, ["8", "9"])
+    (tmp_path / "8" / "schedstat").write_text("1 1 1")
+    assert [threads.have_others_run(), threads.have_others_run()] == [True, False]
+
+
 def test_a_thread_that_runs_between_two_barriers_only_does_not_look_at_the_clock(tmp_path):
     (tmp_path / "8").mkdir()
     threads, wall = PollingThreads(tmp_path), 0.0

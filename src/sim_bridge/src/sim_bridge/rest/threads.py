@@ -12,9 +12,9 @@ WAITING_STATES = frozenset(b"SItTXZ")
 STAT_BYTES = 128
 PROC = Path("/proc")
 TURNS_LIBRARY = b"libordered_wake"
-# Time between two looks at a thread in which one that looks at the clock each millisecond has run [wall s],
-# and number of such pairs of looks after which a thread is known.
-WATCH_SECONDS, WATCHES = 0.0011, 20
+# Time between two looks at a thread in which one that looks at the clock each millisecond has usually run
+# [wall s], and number of such pairs of looks after which a thread is known.
+WATCH_SECONDS, WATCHES = 0.0009, 20
 # A thread's wait may take so much longer than asked for [ns]: at a barrier short ones follow each other, and
 # Linux's default is 50 000.
 PR_SET_TIMERSLACK, TIMER_SLACK_NANOSECONDS = 29, 1000
@@ -23,7 +23,7 @@ SLEEPS = (b"35", b"230", b"101", b"115")
 # Links of a folder without threads.
 FOLDER_LINKS = 2
 # Processor time that threads take which only look at the clock: share of the time between two looks at the
-# process, and time beyond that [s]; and the greatest for a process that has rested in between.
+# process, and time beyond that [s]; and the greatest for a process that has rested in between [s].
 IDLE_SHARE, IDLE_SECONDS = 0.25, 5e-5
 REST_SECONDS = 2e-6
 
@@ -52,18 +52,17 @@ class ProcessThreads:
         self._at_rest: Optional[Tuple[float, float]] = None
         self._is_backward = False
         self._polling = PollingThreads(self._folder) if is_native(pid, proc) else None
-        self._polls = self._polling is not None
 
     def may_poll(self) -> bool:
         """Return whether a thread may look at the clock again and again, and learn it at this barrier.
 
         Threads of Python wait for the clock itself.
         """
-        self._polls = self._polling is not None and self._polling.may_be_any(self._names())
-        return self._polls
+        return self._polling is not None and self._polling.may_be_any(self._names())
 
-    def stop_watching(self) -> None:
-        """Learn no more at this barrier: threads may run for another reason before the next look."""
+    def begin_barrier(self) -> None:
+        """Discard the last look: the threads may have run since, for a message or the time."""
+        self._at_rest = None
         if self._polling is not None:
             self._polling.stop_watching()
 
@@ -80,8 +79,7 @@ class ProcessThreads:
         self._is_backward = not self._is_backward
         names = self._names()
         if not all(map(self._is_waiting, reversed(names) if self._is_backward else names)):
-            self._at_rest = None
-            self.stop_watching()
+            self.begin_barrier()
             return False
         before, self._at_rest = self._at_rest, self._times()
         if self._polling is not None:
@@ -89,7 +87,10 @@ class ProcessThreads:
         if before is None:
             return True
         wall, processor = (now - then for now, then in zip(self._at_rest, before))
-        return processor <= (IDLE_SHARE * wall + IDLE_SECONDS if self._polls else REST_SECONDS)
+        if processor <= REST_SECONDS:
+            return True
+        is_polling_alone = self._polling is not None and not self._polling.have_others_run()
+        return is_polling_alone and processor <= IDLE_SHARE * wall + IDLE_SECONDS
 
     def close(self) -> None:
         """Close the files of the threads."""
@@ -143,6 +144,7 @@ class PollingThreads:
         self._counts: Dict[str, Tuple[int, int]] = {}
         self._seen: Optional[Dict[str, bytes]] = None
         self._since = 0.0
+        self._others: Dict[str, bytes] = {}
 
     def may_be_any(self, names: List[str]) -> bool:
         """Return whether a thread sleeps, looks at the clock, or is unknown; begin to watch the unknown.
@@ -162,22 +164,34 @@ class PollingThreads:
             wall: Wall time [s].
             names: Numbers of the threads.
         """
+        if not self._others:
+            self._others = {name: self._runs(name) for name in names if not self._may_poll(name)}
         if self._seen is None or wall - self._since < WATCH_SECONDS:
             return
         unknown = [name for name in names if self._counts.get(name, (0, 0))[0] < WATCHES]
-        now = {name: self._read(name, "schedstat").split()[-1] for name in unknown}
+        now = {name: self._runs(name) for name in unknown}
         for name in now.keys() & self._seen.keys():
             watches, runs = self._counts.get(name, (0, 0))
             self._counts[name] = (watches + 1, runs + (now[name] != self._seen[name]))
         self._seen, self._since = now or None, wall
 
+    def have_others_run(self) -> bool:
+        """Return whether threads that do not look at the clock have run since the last call or first look."""
+        now = {name: self._runs(name) for name in self._others}
+        before, self._others = self._others, now
+        return now != before
+
     def stop_watching(self) -> None:
         """Discard the last look."""
-        self._seen = None
+        self._seen, self._others = None, {}
 
     def _may_poll(self, name: str) -> bool:
         watches, runs = self._counts.get(name, (0, 0))
         return watches < WATCHES or 2 * runs >= WATCHES
+
+    def _runs(self, name: str) -> bytes:
+        """How often a thread has run."""
+        return self._read(name, "schedstat").split()[-1]
 
     def _read(self, name: str, file: str) -> bytes:
         try:

@@ -209,7 +209,7 @@ class PacedNodes:
 
     def _wait_for(self, chosen: Set[str], before: Before, is_clock_sent: bool) -> AwaitedRest:
         for name in chosen:
-            self._threads[name].stop_watching()
+            self._threads[name].begin_barrier()
         quiet = _quiet(chosen, self._nodes, self._threads, before, is_clock_sent)
         if self._is_graph_new:
             quiet = SETTLING_QUIET_SECONDS, False
@@ -333,9 +333,10 @@ def _quiet(
 ) -> Tuple[float, bool]:
     """Return for how long chosen nodes must rest [wall s], and whether from a look at which they do."""
     if is_clock_sent and before is not Before.CLOCK:
+        may_poll = _may_poll(chosen, nodes, threads)
         if any(threads[name].take_turns for name in chosen):
             return TURNS_QUIET_SECONDS, False
-        if _may_poll(chosen, nodes, threads):
+        if may_poll:
             return POLLING_SECONDS, True
     if before is Before.TICK or before is Before.CLOCK and _are_sending(chosen, nodes):
         return BETWEEN_NODES_QUIET_SECONDS, False
