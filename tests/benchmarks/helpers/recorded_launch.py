@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, Callable, Sequence
 
 from helpers.busy_loops import busy_loops
+from supervision.processes import ending_with_parent
 from supervision.ros.graph import free_port
 
 MOST_SECONDS, STOP_SECONDS = 690.0, 30.0
@@ -42,7 +43,13 @@ def recorded_launch(
         stack.callback(recorder.terminate)
         command = ["roslaunch", "-p", environment["ROS_MASTER_URI"].rpartition(":")[2], *launch]
         with log.open("ab") as output:
-            process = subprocess.Popen(command, env=environment, stdout=output, stderr=subprocess.STDOUT)
+            process = subprocess.Popen(
+                command,
+                env=environment,
+                stdout=output,
+                stderr=subprocess.STDOUT,
+                preexec_fn=ending_with_parent(),
+            )
         stack.callback(_stop, process)
         deadline = time.monotonic() + MOST_SECONDS
         while time.monotonic() < deadline and process.poll() is None:
