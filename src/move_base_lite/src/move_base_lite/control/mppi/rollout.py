@@ -163,9 +163,11 @@ def kernel_arguments(scene: MppiScene, limits: MotionLimits, weights: CostWeight
 
 @numba.njit(cache=True)
 def _unpack(clearance, to_go, outline_xy, dynamic_obstacles, n):
-    scene = MppiScene(clearance, to_go, outline_xy, dynamic_obstacles, n[0], n[1], n[2], n[3], n[4])
-    limits = MotionLimits(n[5], n[6], n[7], n[8], n[9], n[10], n[11], n[12])
-    return scene, limits, CostWeights(n[13], n[14], n[15], n[16], n[17], n[18], n[19], n[20])
+    arrays = clearance, to_go, outline_xy, dynamic_obstacles
+    scene = MppiScene(*arrays, n[0], n[1], n[2], n[3], n[4], n[5], n[6])
+    limits = MotionLimits(n[7], n[8], n[9], n[10], n[11], n[12], n[13], n[14])
+    weights = CostWeights(n[15], n[16], n[17], n[18], n[19], n[20], n[21], n[22])
+    return scene, limits, weights
 
 
 @numba.njit(cache=True)
@@ -276,7 +278,7 @@ def _start_rollout(motions, steps, start, problem):
         weights.dynamic_obstacle_distance, cell + _position_uncertainty(steps * limits.period)
     )
     clearance = footprint_clearance(scene, x, y, c, s, exact_below)
-    min_dynamic_clearance = min(cell, dynamic_obstacle_clearance(scene, x, y, 0.0, dynamic_exact_below))
+    min_dynamic_clearance = min(cell, dynamic_obstacle_clearance(scene, x, y, c, s, 0.0, dynamic_exact_below))
     to_go = value_at(scene.to_go, scene, x, y)
     for motion in motions:
         motion.x, motion.y, motion.yaw, motion.c, motion.s = x, y, yaw, c, s
@@ -306,7 +308,7 @@ def _advance(motion, step, requested, shared, problem):
     c, s = _rotate(ahead_c, ahead_s, turn)
     x, y = motion.x + v * dt * ahead_c, motion.y + v * dt * ahead_s
     clearance = footprint_clearance(scene, x, y, c, s, shared.exact_below)
-    obstacle_clearance = dynamic_obstacle_clearance(scene, x, y, seconds, shared.dynamic_exact_below)
+    obstacle_clearance = dynamic_obstacle_clearance(scene, x, y, c, s, seconds, shared.dynamic_exact_below)
     left = 1.0 - step / shared.steps
     risk = max(motion.risk, _risk(obstacle_clearance - shared.min_dynamic_clearance, seconds))
     cost = motion.cost + left * weights.dynamic_obstacle * (risk - motion.risk)

@@ -37,6 +37,8 @@ class MppiScene(NamedTuple):
         cells_per_metre: Inverse of the resolution.
         inscribed_radius: Inscribed radius of the footprint [m].
         circumscribed_radius: Circumscribed radius of the footprint [m].
+        half_length: Half the length of the box around the footprint, centred at the base [m].
+        half_width: Half its width [m].
     """
 
     clearance: np.ndarray
@@ -48,6 +50,8 @@ class MppiScene(NamedTuple):
     cells_per_metre: float
     inscribed_radius: float
     circumscribed_radius: float
+    half_length: float
+    half_width: float
 
 
 # The first fields of MppiScene are arrays.
@@ -78,6 +82,8 @@ def scene_of(context: ControlContext, plan: Plan, use_global_costmap: bool) -> M
         cells_per_metre=1.0 / window.resolution,
         inscribed_radius=costmap.footprint.inscribed_radius,
         circumscribed_radius=costmap.footprint.circumscribed_radius,
+        half_length=float(np.abs(costmap.footprint.corners_xy[:, 0]).max()),
+        half_width=float(np.abs(costmap.footprint.corners_xy[:, 1]).max()),
     )
 
 
@@ -190,13 +196,17 @@ def _least_clearance(scene, base_row, base_col, c, s):
 
 
 @numba.njit(cache=True)
-def dynamic_obstacle_clearance(scene, x, y, seconds, exact_below):
-    """Compute the distance from the robot's circle to the nearest dynamic obstacle at a future time.
+def dynamic_obstacle_clearance(scene, x, y, c, s, seconds, exact_below):
+    """Compute the distance from the robot to the nearest dynamic obstacle at a future time.
+
+    The robot is where its circumscribed circle and the box around its footprint overlap.
 
     Args:
         scene: MppiScene.
         x: Robot position in the local frame [m].
         y: Robot position in the local frame [m].
+        c: Cosine of the robot's heading.
+        s: Sine of the robot's heading.
         seconds: Time from now [s].
         exact_below: Largest result [m].
     """
@@ -206,7 +216,10 @@ def dynamic_obstacle_clearance(scene, x, y, seconds, exact_below):
         off_x, off_y = obstacle_x + seconds * v_x - x, obstacle_y + seconds * v_y - y
         reach = (nearest + radius + scene.circumscribed_radius) * ROUNDING
         if off_x * off_x + off_y * off_y < reach * reach:
-            nearest = min(nearest, math.hypot(off_x, off_y) - radius - scene.circumscribed_radius)
+            beyond_x = max(abs(c * off_x + s * off_y) - scene.half_length, 0.0)
+            beyond_y = max(abs(c * off_y - s * off_x) - scene.half_width, 0.0)
+            from_circle = math.hypot(off_x, off_y) - scene.circumscribed_radius
+            nearest = min(nearest, max(from_circle, math.hypot(beyond_x, beyond_y)) - radius)
     return nearest
 
 
