@@ -57,3 +57,25 @@ def problem_at(pose, people):
     limits = MotionLimits(maps.PERIOD, -0.3, 0.5, 1.5, 0.5, 2.0, 0.25, 0.3)
     weights = CostWeights(0.15, 2.0, 0.02, 1.0, 0.2, 0.5, 10.0, 0.15)
     return (scene, limits, weights), np.array([*pose.as_array(), twist.v, twist.omega])
+
+
+@pytest.mark.parametrize(
+    "people, is_known",
+    [
+        pytest.param(np.zeros((0, 5)), False, id="alone"),
+        pytest.param(np.array([(0.6, 3.2, 0.0, 0.0, 0.25)]), True, id="person"),
+    ],
+)
+def test_places_that_seem_unreachable_are_no_worse_than_a_contact_among_people(people, is_known):
+    (scene, limits, weights), start = problem_at(Pose2(2.0, 1.75, 0.0), people)
+    to_go = np.array(scene.to_go)
+    to_go[:, scene_column(scene, 2.1) :] = np.inf
+    problem = scene._replace(to_go=to_go), limits, weights
+    poses, speeds = np.empty((STEPS + 1, 3)), np.empty((STEPS, 2))
+    cost = drive(np.tile((0.5, 0.0), (STEPS, 1)), start, problem, poses, speeds)
+    assert poses[-1, 0] > 2.3
+    assert (cost < 20.0) == is_known
+
+
+def scene_column(scene, x):
+    return int((x - scene.origin_x) * scene.cells_per_metre)

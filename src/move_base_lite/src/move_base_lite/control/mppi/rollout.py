@@ -8,6 +8,7 @@ import numpy as np
 
 from move_base_lite.control.mppi.scene import (
     ARRAYS,
+    FAR,
     MppiScene,
     dynamic_obstacle_clearance,
     footprint_clearance,
@@ -24,6 +25,9 @@ SMALL_ANGLE = 0.2
 MIN_EXPOSURE_SPEED = 0.1
 # Part of the samples that is evaluated while the mean of the last period is unobstructed.
 UNOBSTRUCTED_DIVISOR = 2
+# Cost to go above that of the start at which places that seem unreachable are valued among dynamic obstacles
+# [m]: what encloses them moves on, while a contact is final.
+MAX_DETOUR = 2.0
 # Position uncertainty of a dynamic obstacle [m], and its growth with prediction time [m/s].
 UNCERTAINTY, UNCERTAINTY_GROWTH = 0.1, 0.1
 
@@ -86,6 +90,7 @@ class RolloutStart(NamedTuple):
         min_clearance: Static clearance below which the robot is in collision [m].
         min_dynamic_clearance: The same for dynamic obstacles [m].
         seconds_to_stop: Stopping time from the start [s].
+        max_to_go: Highest cost to go, instead of that of unknown places [m].
     """
 
     steps: int
@@ -94,6 +99,7 @@ class RolloutStart(NamedTuple):
     min_clearance: float
     min_dynamic_clearance: float
     seconds_to_stop: float
+    max_to_go: float
 
 
 # State of a rollout: pose, cosine and sine of its yaw, velocity, cost so far, collision risk so far,
@@ -279,7 +285,10 @@ def _start_rollout(motions, steps, start, problem):
     )
     clearance = footprint_clearance(scene, x, y, c, s, exact_below)
     min_dynamic_clearance = min(cell, dynamic_obstacle_clearance(scene, x, y, c, s, 0.0, dynamic_exact_below))
-    to_go = value_at(scene.to_go, scene, x, y)
+    to_go, max_to_go = value_at(scene.to_go, scene, x, y), FAR
+    if scene.dynamic_obstacles.shape[0] > 0:
+        to_go = min(to_go, scene.to_go.shape[0] * cell)
+        max_to_go = to_go + MAX_DETOUR
     for motion in motions:
         motion.x, motion.y, motion.yaw, motion.c, motion.s = x, y, yaw, c, s
         motion.v, motion.omega, motion.cost, motion.risk = v, omega, 0.0, 0.0
@@ -291,6 +300,7 @@ def _start_rollout(motions, steps, start, problem):
         min(cell, clearance),
         min_dynamic_clearance,
         abs(v) / limits.acceleration,
+        max_to_go,
     )
 
 
@@ -317,7 +327,7 @@ def _advance(motion, step, requested, shared, problem):
             cost = np.inf
         motion.cost = cost + left * (1.0 + weights.delay * shared.steps * dt * motion.to_go)
         return False
-    to_go = value_at(scene.to_go, scene, x, y)
+    to_go = min(value_at(scene.to_go, scene, x, y), shared.max_to_go)
     motion.x, motion.y, motion.yaw, motion.c, motion.s = x, y, motion.yaw + omega * dt, c, s
     motion.v, motion.omega, motion.risk, motion.clearance, motion.to_go = v, omega, risk, clearance, to_go
     motion.cost = _step_cost(cost, v, omega, clearance, obstacle_clearance, to_go, limits, weights)
