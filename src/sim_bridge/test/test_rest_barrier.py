@@ -342,6 +342,12 @@ def test_a_thread_that_runs_beside_one_that_looks_at_the_clock_is_noticed(tmp_pa
     threads.watch(100.0, ["8", "9"])
     (tmp_path / "8" / "schedstat").write_text("1 1 1")
     assert [threads.have_others_run(), threads.have_others_run()] == [True, False]
+    threads.stop_watching()
+    (tmp_path / "8" / "syscall").write_text("230 0x1")
+    threads.may_be_any(["8", "9"])
+    threads.watch(101.0, ["8", "9"])
+    (tmp_path / "8" / "schedstat").write_text("1 1 2")
+    assert not threads.have_others_run(), "it sleeps in simulated time"
 
 
 def test_a_thread_that_runs_between_two_barriers_only_does_not_look_at_the_clock(tmp_path):

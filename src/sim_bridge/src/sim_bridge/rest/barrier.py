@@ -119,13 +119,14 @@ class RestBarrier:
             has_news: Whether a message has arrived since the last call: a node may not have rested before.
         """
         nodes, quiet = rest.nodes, rest.quiet
+        restart = None if rest.from_first_rest else wall
         barrier = self._barrier
         if barrier is None:
-            since, first = (None, LOOK_SECONDS) if rest.from_first_rest else (wall, quiet / LOOKS)
-            self._barrier = _Barrier(wall, since, next_look=wall + first)
+            first = LOOK_SECONDS if rest.from_first_rest else quiet / LOOKS
+            self._barrier = _Barrier(wall, restart, next_look=wall + first)
             return False
         if has_news and barrier.news < MOST_NEWS:
-            barrier.news, barrier.quiet_since = barrier.news + 1, None if rest.from_first_rest else wall
+            barrier.news, barrier.quiet_since = barrier.news + 1, restart
         if wall < barrier.next_look:
             return False
         self._recover(wall, nodes)
@@ -134,10 +135,12 @@ class RestBarrier:
             next((name for name, rests in nodes.items() if name not in self.given_up and not rests()), None),
         )
         if barrier.busy is not None:
+            barrier.rests, barrier.next_look = 0, wall + LOOK_SECONDS
+            is_late = self._is_late(barrier, barrier.busy, rest.awaited, wall)
             if barrier.busy == before:
-                barrier.quiet_since = None if rest.from_first_rest else wall
-            self._note_busy(barrier, barrier.busy, before, rest.awaited, wall)
-            barrier.next_look = wall + LOOK_SECONDS
+                barrier.quiet_since = restart
+                if is_late:
+                    self.given_up[barrier.busy] = _Absence(wall)
             return False
         barrier.rests += 1
         barrier.quiet_since = wall if barrier.quiet_since is None else barrier.quiet_since
@@ -148,16 +151,11 @@ class RestBarrier:
             self._barrier = None
         return is_over
 
-    def _note_busy(
-        self, barrier: _Barrier, name: str, before: Optional[str], awaited: Container[str], wall: float
-    ) -> None:
-        """Note that a node did not rest at a look, after that which did not rest at the look before."""
-        barrier.rests = 0
+    def _is_late(self, barrier: _Barrier, name: str, awaited: Container[str], wall: float) -> bool:
+        """Count a look at which a node did not rest; return whether that has exhausted the patience."""
         looks = barrier.busy_looks[name] = barrier.busy_looks.get(name, 0) + 1
         patience = self._patience if name in awaited else OTHERS_PATIENCE_SECONDS
-        is_late = wall - barrier.begun > patience and looks > BUSY_LOOKS_PER_SECOND * patience
-        if name == before and is_late:
-            self.given_up[name] = _Absence(wall)
+        return wall - barrier.begun > patience and looks > BUSY_LOOKS_PER_SECOND * patience
 
     def pause(self, wall: float) -> float:
         """Return the time until the next look [s].

@@ -4,7 +4,7 @@ import ctypes
 import os
 import time
 from pathlib import Path
-from typing import Callable, Dict, List, Optional, Tuple
+from typing import Callable, Dict, FrozenSet, List, Optional, Tuple
 
 # States of threads that wait, for an event or because they are stopped or have ended.
 WAITING_STATES = frozenset(b"SItTXZ")
@@ -19,7 +19,7 @@ WATCH_SECONDS, WATCHES = 0.0009, 20
 # Linux's default is 50 000.
 PR_SET_TIMERSLACK, TIMER_SLACK_NANOSECONDS = 29, 1000
 # Numbers of system calls in which a thread sleeps, on x86-64 and ARM.
-SLEEPS = (b"35", b"230", b"101", b"115")
+SLEEP_CALLS = (b"35", b"230", b"101", b"115")
 # Links of a folder without threads.
 FOLDER_LINKS = 2
 # Processor time that threads take which only look at the clock: share of the time between two looks at the
@@ -145,6 +145,7 @@ class PollingThreads:
         self._seen: Optional[Dict[str, bytes]] = None
         self._since = 0.0
         self._others: Dict[str, bytes] = {}
+        self._sleeping: FrozenSet[str] = frozenset()
 
     def may_be_any(self, names: List[str]) -> bool:
         """Return whether a thread sleeps, looks at the clock, or is unknown; begin to watch the unknown.
@@ -155,7 +156,8 @@ class PollingThreads:
         for gone in self._counts.keys() - names:
             del self._counts[gone]
         self._seen, self._since = {}, 0.0
-        return any(self._may_poll(name) or self._read(name, "syscall").split()[0] in SLEEPS for name in names)
+        self._sleeping = frozenset(n for n in names if self._read(n, "syscall").split()[0] in SLEEP_CALLS)
+        return any(map(self._may_poll, names))
 
     def watch(self, wall: float, names: List[str]) -> None:
         """Note whether threads have run since the last look; at a look at which all of them rest.
@@ -186,8 +188,9 @@ class PollingThreads:
         self._seen, self._others = None, {}
 
     def _may_poll(self, name: str) -> bool:
+        """Whether a thread looks at the clock, as one that sleeps does until it wakes up, or is unknown."""
         watches, runs = self._counts.get(name, (0, 0))
-        return watches < WATCHES or 2 * runs >= WATCHES
+        return name in self._sleeping or watches < WATCHES or 2 * runs >= WATCHES
 
     def _runs(self, name: str) -> bytes:
         """How often a thread has run."""
@@ -195,9 +198,15 @@ class PollingThreads:
 
     def _read(self, name: str, file: str) -> bytes:
         try:
-            return (self._folder / name / file).read_bytes() or b"0"
+            number = os.open(f"{self._folder}/{name}/{file}", os.O_RDONLY | os.O_CLOEXEC)
         except OSError:
             return b"0"  # it has ended
+        try:
+            return os.read(number, STAT_BYTES) or b"0"
+        except OSError:
+            return b"0"
+        finally:
+            os.close(number)
 
 
 def _state_in(stat: bytes) -> int:

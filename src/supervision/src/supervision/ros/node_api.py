@@ -3,7 +3,7 @@
 import xmlrpc.client
 from contextlib import suppress
 from itertools import chain
-from typing import Any, Container, List, Optional, Set, Tuple
+from typing import Any, Container, List, Set, Tuple
 
 import rosgraph
 
@@ -45,15 +45,6 @@ def answers(uri: str) -> bool:
     except _SILENCE:
         return False
     return code == 1
-
-
-def pid_of(node: str) -> Optional[int]:
-    """Return the process of a node on its machine; None if it does not respond."""
-    try:
-        code, pid = _ask(_ask(rosgraph.get_master_uri(), "lookupNode", node)[1], "getPid")
-    except _SILENCE:
-        return None
-    return pid if code == 1 else None
 
 
 def node_names() -> Set[str]:

@@ -6,6 +6,8 @@ import os
 from pathlib import Path
 from typing import Iterator, Sequence
 
+from planar.files.writing import write_atomically
+
 # Changes with each package that is installed or upgraded.
 SYSTEM_PACKAGES = Path("/var/lib/dpkg/status")
 
@@ -39,9 +41,7 @@ class BuildStamp:
 
     def write(self) -> None:
         """Write the stamp: the build is complete."""
-        new = self._file.with_suffix(".new")
-        new.write_text(self._digest)
-        new.replace(self._file)
+        write_atomically(self._file, self._digest.encode())
 
 
 def _states_in(tree: Path) -> Iterator[str]:

@@ -24,7 +24,7 @@ from evaluation.ros.run_topics import (
 )
 from run_project.judging.run_record import ProjectRunRecord
 from run_project.ros.graph_nodes import GraphNodes
-from supervision.ros.node_api import pid_of
+from sim_bridge.ros.timing.connection_check import ConnectionCheck
 
 # Size of seq and stamp at the start of a serialized header: they differ between otherwise equal messages.
 CHANGING_BYTES = struct.calcsize("<III")
@@ -53,7 +53,7 @@ class Observer:
         self.record = ProjectRunRecord(lambda text: log_event(f"{self.simulated_time:7.1f} s  {text}"))
         self.record.attach(self.events)
         self.has_goal_clients = False
-        self.nodes = GraphNodes(pid_of)
+        self.nodes = GraphNodes(lambda name: ConnectionCheck().local_process(name))
         self._topics = RunTopics(self.events, timekeeper=ClockAdvanced)
         self._seen: Set[str] = set()
         self._goal_topics: Set[str] = set()

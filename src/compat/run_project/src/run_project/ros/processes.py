@@ -9,6 +9,7 @@ from typing import Dict, List, NamedTuple, Sequence, Tuple
 import psutil
 
 from run_project.stand_ins import STAND_INS
+from sim_bridge.rest.threads import SLEEP_CALLS
 
 # A process busy-waits if its main thread uses this share of a core for this time [s] and gives it up less
 # often than this within a second of it: one that also waits for messages does so more often.
@@ -20,8 +21,8 @@ NODE_SECONDS, PROGRAM_SECONDS = 30.0, 3.0
 SHELLS = ("", "bash", "sh", "dash", "zsh")
 # A wait of one thread from which on it counts as long [s]: those of roscpp and rospy last half a second.
 LONG_SLEEP_SECONDS = 1.0
-# Numbers of system calls on x86-64 and ARM: sleeps; waits for files; waits for other threads.
-SLEEPS, SELECTS, FUTEXES = ("35", "230", "101", "115"), ("23", "270", "72"), ("202", "98")
+# Numbers of system calls on x86-64 and ARM: waits for files; waits for other threads.
+SELECTS, FUTEXES = (b"23", b"270", b"72"), (b"202", b"98")
 
 
 class ListedProcess(NamedTuple):
@@ -126,7 +127,7 @@ class WallSleeps:
 
     def __init__(self, proc: Path = Path("/proc")):
         self._proc = proc
-        self._resting: Dict[Tuple[int, str], Tuple[str, float]] = {}
+        self._resting: Dict[Tuple[int, str], Tuple[bytes, float]] = {}
 
     def are_any(self, processes: Sequence[psutil.Process], now: float) -> bool:
         """Return whether a thread has been in one sleep for long, at a wall time [s]; call it repeatedly."""
@@ -145,16 +146,16 @@ class WallSleeps:
         return any(now - since > LONG_SLEEP_SECONDS for _, since in self._resting.values())
 
 
-def _timed_wait(thread: Path) -> str:
+def _timed_wait(thread: Path) -> bytes:
     """What identifies the sleep of a thread, or its wait with a limit for another; empty if it is in none."""
     try:
-        text = (thread / "syscall").read_text()
+        text = (thread / "syscall").read_bytes()
     except PermissionError:
-        return "unknown"
+        return b"unknown"
     number, *arguments = text.split()
     if number in SELECTS:
         is_timed = int(arguments[0], 16) == 0  # of no file: a sleep
     else:
-        is_timed = number in SLEEPS or (number in FUTEXES and int(arguments[3], 16) != 0)
-    lines = (thread / "status").read_text().splitlines()
-    return text + next(line for line in lines if line.startswith("voluntary")) if is_timed else ""
+        is_timed = number in SLEEP_CALLS or (number in FUTEXES and int(arguments[3], 16) != 0)
+    lines = (thread / "status").read_bytes().splitlines()
+    return text + next(line for line in lines if line.startswith(b"voluntary")) if is_timed else b""

@@ -99,6 +99,7 @@ class ProjectRun:
         self.is_over_time = False
         self._busy, self._wall_sleeps = BusyProcesses(), WallSleeps()
         self._limit = RealTimeLimit(float(str(parameters["/gazebo/speed"])), SimulatorSpeed().set)
+        self._resources = contextlib.ExitStack()
         self._sleeps = ScriptSleeps(
             lambda: self.observer.simulated_time,
             lambda: self._limit.update(time.monotonic(), is_starting=True, has_new_window=False),
@@ -120,7 +121,7 @@ class ProjectRun:
             if self.user is not None:
                 self.user.attach(self.observer.events, self.observer.record.alignment)
             self.observer.start()
-            self._sleeps.__enter__()
+            self._resources.enter_context(self._sleeps)
             if self.user is not None:
                 self.user.start()
         except BaseException:
@@ -131,7 +132,7 @@ class ProjectRun:
     def __exit__(self, *_):
         if self.user is not None:
             self.user.stop()
-        self._sleeps.__exit__()
+        self._resources.close()
         rospy.signal_shutdown("the run is over")
         _interrupt([each.process for each in list_processes(self._helpers)])
         _interrupt(self._recorder)
