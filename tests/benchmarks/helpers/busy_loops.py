@@ -13,7 +13,7 @@ from supervision.processes import ending_with_parent
 def busy_loops(count: int) -> Iterator[None]:
     """Keep ``count`` processors busy, at most until this process ends."""
     command = [sys.executable, "-c", "while True: pass"]
-    end = ending_with_parent(signal.SIGKILL)
+    end = ending_with_parent(signal.SIGTERM)
     loops = [subprocess.Popen(command, preexec_fn=end) for _ in range(count)]
     try:
         yield
