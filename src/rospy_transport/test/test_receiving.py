@@ -154,3 +154,22 @@ def test_a_service_call_is_preceded_by_the_installed_function(address, monkeypat
     assert call == ["/switch", rospy.get_name(), "7"]
     assert thread == handler_thread != threading.get_ident()
     service.shutdown()
+
+
+def test_a_message_is_unprocessed_until_its_callback_returns(publish, subscribe, wait_until):
+    install(notes_receipt=True)
+    publisher, begun, may_end = publish(), threading.Event(), threading.Event()
+
+    def process(message):
+        begun.set()
+        may_end.wait(5.0)
+
+    subscribe(TOPIC, String, process)
+    wait_until(lambda: publisher.get_num_connections() == 1)
+    wait_until(lambda: not connections.has_unprocessed())
+    publisher.publish("one")
+    assert connections.has_unprocessed(), "it is in the socket, or read"
+    assert begun.wait(5.0)
+    assert connections.has_unprocessed(), "its callback has not returned"
+    may_end.set()
+    wait_until(lambda: not connections.has_unprocessed())

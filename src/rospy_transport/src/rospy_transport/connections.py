@@ -88,15 +88,19 @@ def is_connected(publisher: rospy.Publisher, node: str) -> bool:
     return bool(publisher.impl.has_connection(node))
 
 
-def has_unread() -> bool:
-    """Return whether a subscription of this node has received bytes that rospy has not read yet.
+def has_unprocessed() -> bool:
+    """Return whether a subscription of this node has received bytes that are not read, or processed, yet.
 
-    Needed to process what other nodes have sent before simulated time passes.
+    Needed to process what other nodes have sent before simulated time passes: on a busy machine a thread
+    may wait for milliseconds between reading a message and its callback. It needs ``notes_receipt`` of
+    ``install``.
     """
     ends: Dict[int, socket.socket] = {}
     readable = select.poll()
     for subscription in list(get_topic_manager().subs.values()):
         for connection in list(subscription.connections):
+            if getattr(connection, "is_processing", False):
+                return True
             end = getattr(connection, "socket", None)
             number = end.fileno() if end is not None else -1
             if end is not None and number >= 0:

@@ -11,7 +11,7 @@ from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Type
 
 import rospy.topics
 from rospy.impl.registration import RegManager
-from rospy.impl.tcpros_base import TCPServer
+from rospy.impl.tcpros_base import TCPROSTransport, TCPServer
 from rospy.impl.tcpros_pubsub import QueuedConnection, TCPROSSub
 from rospy.impl.tcpros_service import ServiceImpl
 from rospy.topics import _SubscriberImpl
@@ -177,12 +177,14 @@ BeforeCall = Callable[[str, Mapping[str, str]], None]
 _create_server_sock, _publisher_update = TCPServer._create_server_sock, RegManager.publisher_update
 _init_sub, _receive_callback = TCPROSSub.__init__, _SubscriberImpl.receive_callback
 _handle_request = ServiceImpl._handle_request
+_receive_once = TCPROSTransport.receive_once
 
 
 def install(
     connections: Optional[Type[ImmediateConnection]] = None,
     receive: Optional[Receive] = None,
     before_call: Optional[BeforeCall] = None,
+    notes_receipt: bool = False,
 ) -> None:
     """Replace attributes of rospy in this process; further calls add to the earlier ones.
 
@@ -200,6 +202,8 @@ def install(
         before_call: Called with the resolved name of a service and the connection header of the caller,
             before the service's callback and in its thread; it may wait. rospy's callback does not know the
             service's name.
+        notes_receipt: Have all subscribers note whether they are reading or processing a message, for
+            ``connections.has_unprocessed``.
     """
     TCPServer._create_server_sock = _create_server_sock_with_backlog
     RegManager.publisher_update = _publisher_update_with_queued
@@ -210,6 +214,8 @@ def install(
         _SubscriberImpl.receive_callback = _receiving(receive)
     if before_call is not None:
         ServiceImpl._handle_request = _handling_after(before_call)
+    if notes_receipt:
+        TCPROSTransport.receive_once = _receive_once_noted
 
 
 def uninstall() -> None:
@@ -218,6 +224,7 @@ def uninstall() -> None:
     rospy.topics.QueuedConnection = QueuedConnection
     TCPROSSub.__init__, _SubscriberImpl.receive_callback = _init_sub, _receive_callback
     ServiceImpl._handle_request = _handle_request
+    TCPROSTransport.receive_once = _receive_once
 
 
 def _create_server_sock_with_backlog(self: TCPServer) -> socket.socket:
@@ -255,6 +262,18 @@ def _read_serialized(b: BytesIO, msg_queue: List[SerializedMessage], sock: objec
         b.seek(0)
         b.truncate(0)
         b.write(rest)
+
+
+def _receive_once_noted(self: TCPROSTransport) -> Any:
+    """Note that a message is processed before it is taken from the socket, until the next is waited for.
+
+    In between another thread would find neither the bytes in the socket nor what the callback does.
+    """
+    self.is_processing = False
+    with suppress(OSError, AttributeError):  # closed: rospy notices
+        self.socket.recv(1, socket.MSG_PEEK)
+    self.is_processing = True
+    return _receive_once(self)
 
 
 def _receiving(receive: Receive) -> Callable[[Any, Sequence[Any], Any], None]:

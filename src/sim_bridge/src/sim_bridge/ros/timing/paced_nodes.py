@@ -8,7 +8,8 @@ import rospy
 from std_msgs.msg import String
 
 from planar_ros.lockstep.transport import INSTANT_TOPIC
-from rospy_transport.connections import has_undelivered, has_unread, message_count, outgoing
+from rospy_transport.connections import has_undelivered, has_unprocessed, message_count, outgoing
+from rospy_transport.replacements import install
 from sim_bridge.rest.barrier import (
     BETWEEN_NODES_QUIET_SECONDS,
     DATA_QUIET_SECONDS,
@@ -160,6 +161,7 @@ class PacedNodes:
         """Set the names of the nodes to wait for, and of those for which the simulation waits elsewhere."""
         self._wanted, self._synchronised = names | (self._named - synchronised), synchronised
         if self.are_any:
+            install(notes_receipt=True)
             self._search.start()
 
     @property
@@ -181,8 +183,9 @@ class PacedNodes:
         if not self._search.searched.issuperset({MASTER, *(self._wanted - self._named)}):
             return False
         self._take_found()
-        submitted = self._calls.submitted
-        has_news = submitted != self._submitted or has_unread()
+        is_receiving = has_unprocessed()
+        submitted = self._calls.submitted  # afterwards: what has been processed has submitted its calls
+        has_news = is_receiving or submitted != self._submitted
         self._submitted = submitted
         if self._search.changes != self._seen_changes:
             self._seen_changes, self._settled_at = self._search.changes, stamp + SETTLING_SECONDS
