@@ -1,4 +1,4 @@
-"""Whether messages have reached their receiver, although TCP acknowledges them later."""
+"""Whether messages have reached their receiver, acknowledged or not, and whether it has closed the connection."""
 
 import fcntl
 import socket
@@ -72,3 +72,15 @@ def test_messages_under_way_to_some_receivers(ends, opened):
             near.send(bytes(1 << 16))
     assert connections.has_undelivered({NODE})
     assert not connections.has_undelivered({"/another"})
+
+
+def test_a_connection_that_its_receiver_has_closed_is_dropped_before_the_next_message(ends, opened):
+    near, far = ends
+    publisher = opened(rospy.Publisher("/topic", String, queue_size=1))
+    connections.connect(publisher, NODE, near)
+    assert not connections.drop_closed()
+    assert publisher.get_num_connections() == 1
+    far.close()
+    assert connections.drop_closed()
+    assert publisher.get_num_connections() == 0
+    assert not connections.drop_closed()

@@ -26,6 +26,18 @@ class _OutgoingConnections:
     def __init__(self) -> None:
         self._by_topic: List[List[Any]] = []
         self._listed: List[Tuple[str, str, Any]] = []
+        self._closing, self._polled = select.poll(), self._listed
+
+    def closed(self) -> List[Tuple[str, Any]]:
+        """Return topic and connection of those that the receiver has closed."""
+        listed = self()
+        if self._polled is not listed:
+            self._closing, self._polled = select.poll(), listed
+            for _, _, connection in listed:
+                if (number := _file_number(connection)) >= 0:
+                    self._closing.register(number, select.POLLRDHUP)
+        ended = {number for number, _ in self._closing.poll(0)}
+        return [(topic, each) for _, topic, each in listed if ended and _file_number(each) in ended]
 
     def __call__(self) -> List[Tuple[str, str, Any]]:
         topics = list(get_topic_manager().pubs.items())
@@ -51,6 +63,20 @@ def outgoing() -> Sequence[Tuple[str, str, Any]]:
     for a subscriber that connects before the queue size of the topic is known.
     """
     return _outgoing()
+
+
+def drop_closed() -> bool:
+    """Remove connections that their receivers have closed; return whether there were any.
+
+    rospy notices only at the second message afterwards. Needed to wait for a receiver that subscribes again,
+    as the official costmaps do when they are cleared, before it misses a message.
+    """
+    found = _outgoing.closed()
+    for topic, connection in found:
+        publisher = get_topic_manager().pubs.get(topic)
+        if publisher is not None:
+            publisher.remove_connection(connection)
+    return bool(found)
 
 
 def message_count(connection: Any) -> int:
@@ -101,10 +127,8 @@ def has_unprocessed() -> bool:
         for connection in list(subscription.connections):
             if getattr(connection, "is_processing", False):
                 return True
-            end = getattr(connection, "socket", None)
-            number = end.fileno() if end is not None else -1
-            if end is not None and number >= 0:
-                ends[number] = end
+            if (number := _file_number(connection)) >= 0:
+                ends[number] = connection.socket
                 readable.register(number, select.POLLIN)
     return any(_bytes_in(ends[number], termios.FIONREAD) for number, _ in readable.poll(0))
 
@@ -176,6 +200,12 @@ def connect(publisher: rospy.Publisher, node: str, end: socket.socket) -> Any:
     transport.set_socket(end, node)
     publisher.impl.add_connection(transport)
     return next(each for each in publisher.impl.connections if each.endpoint_id == node)
+
+
+def _file_number(connection: Any) -> int:
+    """File number of a connection's socket; negative without."""
+    end = getattr(connection, "socket", None)
+    return -1 if end is None else int(end.fileno())
 
 
 def _bytes_in(end: socket.socket, queue: int) -> int:

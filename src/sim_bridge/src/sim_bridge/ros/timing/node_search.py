@@ -63,6 +63,7 @@ class NodeSearch:
         self.unconnected: Tuple[str, ...] = ()
         self._begun, self._is_requested = 0, threading.Event()
         self._connected_graph: Optional[Tables] = None
+        self._must_check_all = False
         self._named, self._known, self._bystanders = named, known, bystanders
         self._check = ConnectionCheck()
         self._processes: Dict[str, Tuple[Optional[int], str]] = {}
@@ -79,6 +80,10 @@ class NodeSearch:
         """Search at once, for missing connections, too; return the number that ``finished`` reaches then."""
         self._is_requested.set()
         return self._begun + 1
+
+    def check_all_connections(self) -> None:
+        """Have the next ``request`` look for missing connections also if the graph is as before."""
+        self._must_check_all = True
 
     def _run(self) -> None:
         before: Optional[Tables] = None
@@ -100,8 +105,9 @@ class NodeSearch:
 
     def _missing_connections(self, graph: Tables) -> Tuple[str, ...]:
         """Return the connections that nodes of this machine still have to make; skips an unchanged graph."""
-        if graph == self._connected_graph:
+        if graph == self._connected_graph and not self._must_check_all:
             return ()
+        self._must_check_all = False
         nodes = {name for name, node in self.nodes.items() if node.pid and node.rule.kind != "observe"}
         missing = tuple(self._check.missing({*nodes, rospy.get_name()} - {MASTER}, (), ()))
         self._connected_graph = None if missing else graph

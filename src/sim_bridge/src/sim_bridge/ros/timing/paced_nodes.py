@@ -8,7 +8,7 @@ import rospy
 from std_msgs.msg import String
 
 from planar_ros.lockstep.transport import INSTANT_TOPIC
-from rospy_transport.connections import has_undelivered, has_unprocessed, message_count, outgoing
+from rospy_transport.connections import drop_closed, has_undelivered, has_unprocessed, message_count, outgoing
 from rospy_transport.replacements import install
 from sim_bridge.rest.barrier import (
     BETWEEN_NODES_QUIET_SECONDS,
@@ -57,16 +57,25 @@ class _NewConnections:
     Args:
         search: Finds missing connections.
         remark: Called with a reason why the run may not be repeatable.
+
+    Attributes:
+        is_one_lost: Whether a receiver has closed a connection since all were made.
     """
 
     def __init__(self, search: NodeSearch, remark: Callable[[str], None]):
         self._search, self._remark = search, remark
         self._awaited_search, self._since = 0, 0.0
         self._unconnectable: Set[str] = set()
+        self.is_one_lost = False
 
     def check_again(self) -> None:
         """Have a search begin at the next barrier."""
-        self._awaited_search = 0
+        self._awaited_search, self.is_one_lost = 0, False
+
+    def note_lost(self) -> None:
+        """Have a search begin now: a receiver has closed a connection, and may subscribe again."""
+        self._awaited_search, self.is_one_lost = 0, True
+        self._search.check_all_connections()
 
     def are_made(self) -> bool:
         """Return whether a search that has begun at this barrier found all connections made."""
@@ -190,8 +199,12 @@ class PacedNodes:
         if self._search.changes != self._seen_changes:
             self._seen_changes, self._settled_at = self._search.changes, stamp + SETTLING_SECONDS
             self._is_graph_new = True
+        if drop_closed():
+            self._settled_at, self._is_graph_new = stamp + SETTLING_SECONDS, True
+            self._connections.note_lost()
         is_settling = stamp < self._settled_at
-        if is_settling and before is Before.CLOCK and not self._connections.are_made():
+        must_connect = is_settling and before is Before.CLOCK or self._connections.is_one_lost
+        if must_connect and not self._connections.are_made():
             return False
         if not self._barrier.is_begun:
             sent = _sent(self._nodes)
