@@ -1,4 +1,4 @@
-"""Whether messages have reached their receiver, acknowledged or not, and whether it has closed the connection."""
+"""Whether messages have reached their receiver, and whether it has closed the connection."""
 
 import fcntl
 import socket

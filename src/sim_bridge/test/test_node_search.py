@@ -40,8 +40,13 @@ def test_only_what_was_not_there_before_has_to_connect(now, expected):
 
 
 class Graph:
+    lost = ()
+
     def graph(self):
         return PUBLISHED, SUBSCRIBED, {}
+
+    def missing(self, members, observers, static_publishers):
+        return self.lost
 
     def local_process(self, name):
         return os.getpid()
@@ -55,11 +60,27 @@ def search(monkeypatch):
     monkeypatch.setattr(node_search.rospy, "is_shutdown", lambda: bool(ended))
     found = NodeSearch({"/viewer": PaceRule("observe")}, {}, ("/log",))
     found.start()
-    deadline = time.monotonic() + SECONDS
-    while not found.finished and time.monotonic() < deadline:
-        time.sleep(0.01)
+    wait_for(found, 1)
     yield found
     ended.append(True)
+
+
+def wait_for(search, number):
+    deadline = time.monotonic() + SECONDS
+    while search.finished < number and time.monotonic() < deadline:
+        time.sleep(0.01)
+    assert search.finished >= number
+
+
+def test_a_lost_connection_is_found_in_an_unchanged_graph(search, monkeypatch):
+    wait_for(search, search.request())
+    assert search.unconnected == ()
+    monkeypatch.setattr(Graph, "lost", ["/scan from /sim to /amcl"])
+    wait_for(search, search.request())
+    assert search.unconnected == (), "what was connected is not asked for again"
+    search.check_all_connections()
+    wait_for(search, search.request())
+    assert search.unconnected == ("/scan from /sim to /amcl",)
 
 
 def test_receivers_are_other_nodes_that_are_not_observers(search):
