@@ -18,6 +18,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <chrono>
@@ -27,7 +28,9 @@
 #include <cstring>
 #include <ctime>
 #include <map>
+#include <memory>
 #include <mutex>
+#include <utility>
 
 namespace ros
 {
@@ -63,8 +66,17 @@ constexpr int LOOKS = 3;
 constexpr std::chrono::seconds PATIENCE{2};
 
 std::mutex g_mutex;
-// Simulated times until which threads sleep or wait for their turn [ns], by number; the kernel counts up.
-std::map<int, int64_t> g_sleeping;
+// A thread that sleeps or waits for its turn: its number in the kernel, and the simulated time until then [ns].
+struct Sleeper
+{
+  int thread;
+  int64_t due;
+};
+
+// By the order in which the threads were created: the kernel's numbers begin again at the highest.
+std::map<int, Sleeper> g_sleeping;
+std::atomic<int> g_created{0};
+thread_local int t_place = 0;
 // Number of changes of the clock, for which threads wait.
 std::atomic<uint32_t> g_changes{0};
 
@@ -116,6 +128,12 @@ bool is_resting(int thread)
   return bracket == nullptr || std::strchr("SItTXZ", bracket[2]) != nullptr;
 }
 
+bool is_sleeping(int thread)
+{
+  return std::any_of(g_sleeping.begin(), g_sleeping.end(),
+                     [thread](const std::pair<const int, Sleeper>& each) { return each.second.thread == thread; });
+}
+
 // Number of a thread that neither sleeps in simulated time nor rests; 0 if there is none.
 int find_busy()
 {
@@ -124,7 +142,7 @@ int find_busy()
   while (dirent* entry = folder != nullptr && busy == 0 ? readdir(folder) : nullptr)
   {
     const int thread = std::atoi(entry->d_name);
-    busy = thread == 0 || g_sleeping.count(thread) != 0 || is_resting(thread) ? 0 : thread;
+    busy = thread == 0 || is_sleeping(thread) || is_resting(thread) ? 0 : thread;
   }
   if (folder != nullptr)
   {
@@ -133,29 +151,29 @@ int find_busy()
   return busy;
 }
 
-bool is_first_due(int self)
+// Whether no thread is due that was created before this one.
+bool is_first_due()
 {
   const int64_t now = simulated_time();
   for (const auto& sleeper : g_sleeping)
   {
-    if (sleeper.first == self || sleeper.second <= now)
+    if (sleeper.first == t_place || sleeper.second.due <= now)
     {
-      return sleeper.first == self;
+      return sleeper.first == t_place;
     }
   }
   return true;
 }
 
-// Note that this thread is due at a simulated time [ns], and return its number.
-int set_due(int64_t stamp)
+// Note that this thread is due at a simulated time [ns].
+void set_due(int64_t stamp)
 {
   const int self = static_cast<int>(syscall(SYS_gettid));
   std::lock_guard<std::mutex> lock(g_mutex);
-  g_sleeping[self] = stamp;
-  return self;
+  g_sleeping[t_place] = Sleeper{self, stamp};
 }
 
-void wait_for_turn(int self)
+void wait_for_turn()
 {
   std::unique_lock<std::mutex> lock(g_mutex);
   const Clock::time_point begin = Clock::now();
@@ -165,7 +183,7 @@ void wait_for_turn(int self)
   for (;;)
   {
     const Clock::time_point now = Clock::now();
-    const bool is_first = is_first_due(self);
+    const bool is_first = is_first_due();
     const int busy = is_first ? find_busy() : 0;
     // A thread that is seen running once has looked at the clock only.
     if (!is_first || (busy != 0 && busy == busy_before))
@@ -182,7 +200,7 @@ void wait_for_turn(int self)
     sched_yield();
     lock.lock();
   }
-  g_sleeping.erase(self);
+  g_sleeping.erase(t_place);
 }
 
 // Wait for a change of the clock since the last call in this thread, as long as between two looks at most.
@@ -202,6 +220,20 @@ bool is_near(clockid_t clock, const timespec& instant)
   const int64_t left = nanoseconds(instant.tv_sec - now.tv_sec, instant.tv_nsec - now.tv_nsec);
   return left > 0 && left <= LOOK;
 }
+// What a new thread does first.
+struct Beginning
+{
+  void* (*function)(void*);
+  void* argument;
+  int place;
+};
+
+void* begin(void* data)
+{
+  const std::unique_ptr<Beginning> beginning(static_cast<Beginning*>(data));
+  t_place = beginning->place;
+  return beginning->function(beginning->argument);
+}
 }  // namespace
 
 void ros::Time::setNow(const Time& now)
@@ -219,10 +251,23 @@ bool ros::Duration::sleep() const
   {
     return sleep_for(this);
   }
-  const int self = set_due(simulated_time() + nanoseconds(sec, nsec));
+  set_due(simulated_time() + nanoseconds(sec, nsec));
   const bool result = sleep_for(this);
-  wait_for_turn(self);
+  wait_for_turn();
   return result;
+}
+
+extern "C" int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*function)(void*),
+                              void* argument) noexcept
+{
+  static const auto create = original<decltype(&pthread_create)>("pthread_create");
+  std::unique_ptr<Beginning> beginning(new Beginning{function, argument, ++g_created});
+  const int error = create(thread, attributes, begin, beginning.get());
+  if (error == 0)
+  {
+    beginning.release();
+  }
+  return error;
 }
 
 extern "C" int nanosleep(const timespec* request, timespec* remaining)
@@ -258,7 +303,8 @@ extern "C" int pthread_cond_wait(pthread_cond_t* condition, pthread_mutex_t* mut
   if (is_time_simulated())
   {
     pthread_mutex_unlock(mutex);
-    wait_for_turn(set_due(simulated_time()));
+    set_due(simulated_time());
+    wait_for_turn();
     pthread_mutex_lock(mutex);
   }
   return result;

@@ -149,6 +149,15 @@ def test_threads_take_turns_in_the_order_of_their_creation(node):
     assert outputs(node, "together", 10, LD_PRELOAD=str(node / "libordered.so")) == ["0123"] * 10
 
 
+def test_their_order_is_that_of_their_creation_also_where_the_kernel_counts_threads_from_the_start(node):
+    unshare = ["unshare", "--pid", "--fork", "--mount-proc", *([] if os.geteuid() == 0 else ["-r"])]
+    count = "expr $(cat /proc/sys/kernel/pid_max) - 3 > /proc/sys/kernel/ns_last_pid"
+    if subprocess.run([*unshare, "sh", "-c", count], capture_output=True).returncode:
+        pytest.skip("this system allows no numbers of processes of a test's own")
+    run = [*unshare, "sh", "-c", f"{count} && LD_PRELOAD=./libordered.so exec ./node together"]
+    assert subprocess.run(run, cwd=node, capture_output=True, text=True).stdout == "0123"
+
+
 def test_the_clock_wakes_a_thread_at_once(node):
     assert outputs(node, "alone", 10, LD_PRELOAD=str(node / "libordered.so")) == ["ready"] * 10
 
