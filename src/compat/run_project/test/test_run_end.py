@@ -2,7 +2,16 @@
 
 import pytest
 
-from run_project.judging.run_end import AFTER_GOALS, BETWEEN_GOALS, ENOUGH_WALL_SECONDS, Quiet, is_over
+from evaluation.event_stream import EventStream
+from evaluation.events import DELETE_ALL, SHOW, MarkerUpdated
+from run_project.judging.run_end import (
+    AFTER_GOALS,
+    BETWEEN_GOALS,
+    DELIVERED_SECONDS,
+    ENOUGH_WALL_SECONDS,
+    Quiet,
+    is_over,
+)
 from run_project.judging.run_record import ProjectGoal, ProjectRunRecord
 
 LONG = Quiet(1e6, 1e6)
@@ -59,6 +68,30 @@ def test_an_object_that_is_picked_up_is_waited_for():
     record.markers = ["shown", "hidden"]
     quiet = Quiet(ENOUGH_WALL_SECONDS + 0.1, AFTER_GOALS.simulated + 0.1)
     assert not is_over_with(record, quiet, has_goal_clients=False)
+
+
+@pytest.mark.parametrize(
+    ("last", "states", "is_enough"),
+    [
+        ("succeeded", {}, True),
+        ("aborted", {}, False),
+        ("succeeded", {"has_goal_clients": True}, False),
+        ("succeeded", {"is_one_sleeping": True}, False),
+    ],
+)
+def test_little_time_is_enough_when_the_object_is_delivered_and_no_node_can_send_a_goal(
+    last, states, is_enough
+):
+    record = record_of("succeeded", last)
+    events = EventStream()
+    record.attach(events)
+    quiet = Quiet(ENOUGH_WALL_SECONDS + 0.1, DELIVERED_SECONDS + 0.1)
+    for action, place in ((SHOW, (1.0, 0.0)), (DELETE_ALL, (1.0, 0.0)), (SHOW, (2.0, 0.0))):
+        assert not is_over_with(record, quiet, has_goal_clients=False)
+        events.publish(
+            MarkerUpdated(stamp=0.0, name="marker", number=0, position=(*place, 0.0), action=action)
+        )
+    assert is_over_with(record, quiet, **{"has_goal_clients": False, **states}) == is_enough
 
 
 def test_a_first_goal_may_take_long():

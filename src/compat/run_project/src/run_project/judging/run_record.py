@@ -145,6 +145,13 @@ class ProjectRunRecord:
         return bool(self.markers) and not self._shown
 
     @property
+    def is_object_delivered(self) -> bool:
+        """Whether a marker was hidden and is shown again, and the last goal was reached."""
+        last_goal = next(reversed(list(self.goals.values())), None)
+        is_shown_again = bool(self._shown) and "hidden" in self.markers
+        return is_shown_again and last_goal is not None and last_goal.is_reached
+
+    @property
     def is_busy(self) -> bool:
         """Whether the robot has moved, or goals or markers have changed, a short time ago."""
         return self.simulated_time - max(self.last_motion_time, self.last_event_time) < REST_SECONDS

@@ -36,6 +36,8 @@ SYNCHRONISED = "synchronised nodes"
 MESSAGES = "messages"
 # Time without a new topic or service after which nodes have started [simulated s].
 SETTLING_SECONDS = 2.0
+# Time between two checks of all connections meanwhile, unless the graph has changed [simulated s].
+CHECK_SECONDS = 0.1
 
 
 class Before(Enum):
@@ -136,7 +138,7 @@ class PacedNodes:
         self._sentences_topic = rospy.Publisher(PACE_TOPIC, String, queue_size=1, latch=True)
         self._submitted = self._seen_changes = 0
         self._connections = _NewConnections(search, remark)
-        self._settled_at, self._is_graph_new = 0.0, False
+        self._settled_at, self._check_at, self._is_graph_new = 0.0, 0.0, False
         self._wait: Optional[AwaitedRest] = None
         self._is_answered = False
         self._sent_before: SentCounts = {}
@@ -203,9 +205,12 @@ class PacedNodes:
             self._settled_at, self._is_graph_new = stamp + SETTLING_SECONDS, True
             self._connections.note_lost()
         is_settling = stamp < self._settled_at
-        must_connect = is_settling and before is Before.CLOCK or self._connections.is_one_lost
-        if must_connect and not self._connections.are_made():
-            return False
+        is_check_due = self._is_graph_new or stamp >= self._check_at
+        must_connect = is_settling and before is Before.CLOCK and is_check_due
+        if must_connect or self._connections.is_one_lost:
+            if not self._connections.are_made():
+                return False
+            self._check_at = stamp + CHECK_SECONDS - 1e-6
         if not self._barrier.is_begun:
             sent = _sent(self._nodes)
             must_look = is_settling or has_news or before in (Before.SENSORS, Before.TICK)
@@ -247,7 +252,7 @@ class PacedNodes:
     def reset_time(self) -> None:
         """Restart simulated time at 0."""
         self._barrier.reset()
-        self._settled_at = SETTLING_SECONDS
+        self._settled_at, self._check_at = SETTLING_SECONDS, 0.0
 
     def _chosen(self, with_synchronised: bool) -> Set[str]:
         """Return the nodes that have to rest."""
