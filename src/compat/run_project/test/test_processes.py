@@ -64,7 +64,14 @@ def test_only_nodes_that_spin_without_sleeping_get_a_lower_priority(cpu_share, r
         (["/ws/devel/lib/robot/pick_objects"], False, False, PROGRAM_SECONDS),
         (["/ws/devel/lib/robot/pick_objects"], False, True, 0.0),
         (["bash", "/opt/ros/bin/rosrun", "robot", "pick_objects"], True, False, 0.0),
-        (["bash"], False, False, 0.0),
+        (
+            ["bash", "-c", "source devel/setup.bash; roslaunch robot world.launch"],
+            False,
+            False,
+            PROGRAM_SECONDS,
+        ),
+        (["bash", "home_service.sh"], True, False, 0.0),
+        (["python3", str(STAND_INS / "bin" / "xterm"), "-e", "roslaunch"], False, False, PROGRAM_SECONDS),
         (["python3", str(STAND_INS / "bin" / "sleep"), "5"], False, False, 0.0),
     ],
 )

@@ -7,7 +7,7 @@ from evaluation.events import DELETE_ALL, SHOW, MarkerUpdated
 from run_project.judging.run_end import (
     AFTER_GOALS,
     BETWEEN_GOALS,
-    DELIVERED_SECONDS,
+    DELIVERED,
     ENOUGH_WALL_SECONDS,
     Quiet,
     is_over,
@@ -85,7 +85,7 @@ def test_little_time_is_enough_when_the_object_is_delivered_and_no_node_can_send
     record = record_of("succeeded", last)
     events = EventStream()
     record.attach(events)
-    quiet = Quiet(ENOUGH_WALL_SECONDS + 0.1, DELIVERED_SECONDS + 0.1)
+    quiet = Quiet(DELIVERED.wall + 0.1, DELIVERED.simulated + 0.1)
     for action, place in ((SHOW, (1.0, 0.0)), (DELETE_ALL, (1.0, 0.0)), (SHOW, (2.0, 0.0))):
         assert not is_over_with(record, quiet, has_goal_clients=False)
         events.publish(

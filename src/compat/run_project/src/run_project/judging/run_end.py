@@ -24,8 +24,8 @@ NO_NODES = Quiet(3.0, 0.0)
 NOTHING_DONE = Quiet(25.0, 0.0)
 # A goal may come; or, with all goals ended, another one; or, without a node that could send one, a marker.
 BEFORE_FIRST_GOAL, BETWEEN_GOALS, AFTER_GOALS = Quiet(90.0, 60.0), Quiet(25.0, 30.0), Quiet(8.0, 10.0)
-# Simulated time after the last event that is enough if the object is delivered and no node can send a goal [s].
-DELIVERED_SECONDS = 3.0
+# Enough if the object is delivered, and no node can send a goal or is known to sleep.
+DELIVERED = Quiet(0.5, 2.0)
 # Wall time that is enough if no thread of the nodes sleeps by it [s]: simulated time waits for nodes.
 ENOUGH_WALL_SECONDS = 1.5
 
@@ -62,5 +62,5 @@ def is_over(
     if not is_one_sleeping:
         limit = limit._replace(wall=ENOUGH_WALL_SECONDS)
         if may_be_last and record.is_object_delivered:
-            limit = limit._replace(simulated=DELIVERED_SECONDS)
+            limit = DELIVERED
     return record.all_goals_ended and quiet.exceeds(limit)

@@ -16,7 +16,7 @@ from sim_bridge.rest.threads import SLEEP_CALLS
 BUSY_CPU_SHARE, BUSY_SECONDS, RESTS_PER_CPU_SECOND = 0.3, 5.0, 5.0
 BUSY_NICENESS = 15
 # Ages at which a launcher without processes, or a node that it has started, and any other program that is not
-# in the graph no longer count as starting [s].
+# in the graph, such as a shell that reads set-up files, no longer count as starting [s].
 NODE_SECONDS, PROGRAM_SECONDS = 30.0, 3.0
 SHELLS = ("", "bash", "sh", "dash", "zsh")
 # A wait of one thread from which on it counts as long [s]: those of roscpp and rospy last half a second.
@@ -118,8 +118,8 @@ def starting_seconds(each: ListedProcess, has_children: bool, is_node: bool) -> 
     is_launched = any(word.startswith("__name:=") for word in each.command)
     if is_launched or any(Path(word).name == "roslaunch" for word in each.command[:2]):
         return NODE_SECONDS
-    program = program_of(each.command)
-    return PROGRAM_SECONDS if program and Path(program).parent != STAND_INS / "bin" else 0.0
+    is_sleeping = program_of(each.command) == str(STAND_INS / "bin" / "sleep")
+    return 0.0 if is_sleeping else PROGRAM_SECONDS
 
 
 class WallSleeps:

@@ -38,7 +38,9 @@ from supervision.processes import adopt_orphans, end_descendants
 from supervision.ros.graph import free_port
 from supervision.ros.node_api import is_master_online
 
-POLL_SECONDS = 0.2
+# Wall time between two looks at the run; before simulated time begins, while a script sleeps until all its
+# programs are seen to have come up; and when the end may come at any time.
+POLL_SECONDS, STARTING_POLL_SECONDS, ENDING_POLL_SECONDS = 0.2, 0.05, 0.1
 MASTER_SECONDS = 30.0
 ENTER_SECONDS = 5.0
 SIGINT_SECONDS = 4.0
@@ -133,9 +135,12 @@ class ProjectRun:
         if self.user is not None:
             self.user.stop()
         self._resources.close()
-        rospy.signal_shutdown("the run is over")
-        _interrupt([each.process for each in list_processes(self._helpers)])
+        processes = [each.process for each in list_processes(self._helpers)]
+        _interrupt(processes)
+        rospy.signal_shutdown("the run is over")  # while the others end
+        psutil.wait_procs(processes, SIGINT_SECONDS)
         _interrupt(self._recorder)
+        psutil.wait_procs(self._recorder, SIGINT_SECONDS)
         end_descendants(2.0)
 
     def environment(self) -> Dict[str, str]:
@@ -192,7 +197,13 @@ class ProjectRun:
                 return f"{what} {STALLED_SECONDS:g} s"
             if not is_master_online():
                 return "the ROS master has ended"
-            time.sleep(POLL_SECONDS)
+            time.sleep(self._pause())
+
+    def _pause(self) -> float:
+        """Wall time until the next look [s]."""
+        if self.observer.simulated_time == 0.0:
+            return STARTING_POLL_SECONDS
+        return ENDING_POLL_SECONDS if self.observer.record.all_goals_ended else POLL_SECONDS
 
     def _list_processes(self, now: float) -> Tuple[List[ListedProcess], List[psutil.Process]]:
         """All processes of the run but the helpers, and of these the project's own nodes."""
@@ -287,11 +298,10 @@ class ProjectRun:
 
 
 def _interrupt(processes: List[psutil.Process]) -> None:
-    """Send SIGINT to processes, and wait for their end."""
+    """Send SIGINT to processes."""
     for process in processes:
         with contextlib.suppress(psutil.NoSuchProcess):
             process.send_signal(signal.SIGINT)
-    psutil.wait_procs(processes, SIGINT_SECONDS)
 
 
 def _press_enter(script: "subprocess.Popen[bytes]") -> None:
