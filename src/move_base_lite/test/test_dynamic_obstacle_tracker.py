@@ -1,6 +1,7 @@
 """Dynamic obstacles are tracked with their velocity; static ones never are, however the robot moves."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,7 +9,7 @@ from robot_in_picture import PERSON_RADIUS, room, scan_with_people, two_rooms, w
 
 from move_base_lite.costmap import observation_from_scan
 from move_base_lite.dynamic_obstacles import DynamicObstacleTracker, TrackerSettings
-from move_base_lite.dynamic_obstacles.scan_segments import ScanSegment
+from move_base_lite.dynamic_obstacles.scan_segments import ScanSegment, ScanSnapshot, segments_of
 from move_base_lite.dynamic_obstacles.track import MAX_SPEED, Track
 from planar import Pose2
 from planar.geometry.ray_casting import cast_rays
@@ -16,9 +17,18 @@ from planar.geometry.ray_casting import cast_rays
 PERIOD = 0.1
 
 
-def track(grid, base_at, person_at, seconds, seed=0, radius=PERSON_RADIUS, settings=TrackerSettings()):
+def track(
+    grid,
+    base_at,
+    person_at,
+    seconds,
+    seed=0,
+    radius=PERSON_RADIUS,
+    settings=TrackerSettings(),
+    half_view=None,
+):
     """[(stamp, rows)] of the obstacles that a robot at ``base_at(t)`` tracks; ``person_at(t)``: a position, a
-    list of positions or None.
+    list of positions or None; ``half_view``: half the field of view in degrees, if it is no full circle.
     """
     rng, tracker, found = np.random.default_rng(seed), DynamicObstacleTracker(), []
     for step in range(round(seconds / PERIOD)):
@@ -26,6 +36,9 @@ def track(grid, base_at, person_at, seconds, seed=0, radius=PERSON_RADIUS, setti
         base, person = base_at(stamp), person_at(stamp)
         people = person if isinstance(person, list) else [person] if person else []
         scan = scan_with_people(grid, base, stamp, people, rng, radius)
+        if half_view is not None:
+            ahead = np.roll(scan.ranges, half_view)[: 2 * half_view + 1]
+            scan = replace(scan, angle_min=-math.radians(half_view), ranges=ahead)
         tracker.update(base, observation_from_scan("scan", scan), settings)
         found.append((stamp, tracker.obstacles_at(stamp)))
     return found
@@ -153,6 +166,30 @@ def test_a_sudden_reversal_is_known_from_the_next_scan(seed):
     for stamp, rows in found:
         if stamp > 1.55:
             assert rows[0][3] == pytest.approx(-1.6, abs=0.4)
+
+
+def test_a_person_who_leaves_the_field_of_view_keeps_radius_and_velocity():
+    def person_at(t):  # at 135 degrees after 4.5 s
+        return 7.0 - 1.0 * t, 5.5
+
+    found = track(
+        room(9.0, 9.0), lambda t: Pose2(4.0, 4.0), person_at, 5.8, 0, 0.5, TrackerSettings(9.0), half_view=135
+    )
+    for stamp, rows in found[10:]:
+        ((x, y, v_x, v_y, radius),) = rows
+        assert math.dist((x, y), person_at(stamp)) < 0.15
+        assert math.dist((v_x, v_y), (-1.0, 0.0)) < 0.25
+        assert radius == pytest.approx(0.5, abs=0.07)
+
+
+def test_two_that_overlap_are_two_segments_whose_outlines_are_known_in_part_only():
+    people = [(3.0, 2.65), (3.0, 3.35)]
+    scan = scan_with_people(
+        room(9.0, 6.0), Pose2(1.0, 3.0), 0.0, people, np.random.default_rng(0), radius=0.45
+    )
+    segments = segments_of(ScanSnapshot(Pose2(1.0, 3.0), observation_from_scan("scan", scan), 8.0))
+    pair = [each for each in segments if min(math.dist(each.centre_xy, xy) for xy in people) < 0.3]
+    assert [segment.is_occluded for segment in pair] == [True, True]
 
 
 def test_an_occluded_person_is_still_predicted():

@@ -1,7 +1,7 @@
 """Segments of a laser scan: groups of neighbouring points that are narrow enough for a person."""
 
 import math
-from typing import List, NamedTuple
+from typing import List, NamedTuple, Tuple
 
 import numba
 import numpy as np
@@ -21,6 +21,8 @@ FREE_MARGIN = 0.12
 DIRECTIONS = 180
 # Angle to the next point beyond a segment's end below which that point can occlude the object [rad].
 OCCLUSION_ANGLE = 0.03
+# Angle without beams above which a scan is no full circle [rad].
+FULL_CIRCLE_GAP = 0.1
 # Of a round object: least sine of half the angle it subtends, and least share of a circle's depth.
 MIN_SINE, MIN_ROUNDNESS = 0.2, 0.5
 
@@ -34,6 +36,8 @@ class ScanSnapshot:
         segments: Segments of the scan.
         beams: (N,) indices of the beams that end within the range, by angle.
         points_xy: (N, 2) ends of these beams, in the odom frame [m].
+        edges: Whether the first and the last point are at the edges of the field of view, beyond which an
+            object may continue.
     """
 
     def __init__(self, sensor_in_odom: Pose2, observation: Observation, max_range: float):
@@ -51,6 +55,7 @@ class ScanSnapshot:
         self.beams, self.points_xy, self._free = _project(
             observation.angles, ranges, limits, (at.x, at.y, at.yaw)
         )
+        self.edges = _edges(observation.angles, self.beams)
 
     def free_share(self, points_xy: np.ndarray) -> float:
         """Compute the share of points that lie in the free space of this scan.
@@ -72,13 +77,22 @@ class ScanSegment(NamedTuple):
         points_xy: (N, 2) in the odom frame [m].
         centre_xy: (2,) centre of the object, one radius behind the nearest point as seen from the sensor [m].
         radius: Radius of the object [m].
-        is_occluded: Whether a nearer object may hide a part of this one.
+        is_occluded: Whether only a part of the object may be visible: a nearer object may hide the rest, or
+            it ends at an edge of the field of view or at a neighbour.
     """
 
     points_xy: np.ndarray
     centre_xy: np.ndarray
     radius: float
     is_occluded: bool
+
+
+def _edges(angles: np.ndarray, beams: np.ndarray) -> Tuple[bool, bool]:
+    """Whether the first and the last beam by angle, of those that end within the range, are the outermost."""
+    low, high = float(angles.min()), float(angles.max())
+    if not len(beams) or high - low > 2.0 * math.pi - FULL_CIRCLE_GAP:
+        return False, False
+    return bool(angles[beams[0]] == low), bool(angles[beams[-1]] == high)
 
 
 def hidden_segment(points_xy: np.ndarray) -> ScanSegment:
@@ -114,7 +128,8 @@ def segments_of(snapshot: ScanSnapshot) -> List[ScanSegment]:
     """
     if len(snapshot.points_xy) < MIN_SEGMENT_BEAMS:
         return []
-    first, groups, centres = _groups(snapshot.points_xy, snapshot.sensor_in_odom.x, snapshot.sensor_in_odom.y)
+    at = snapshot.sensor_in_odom
+    first, groups, centres = _groups(snapshot.points_xy, at.x, at.y, snapshot.edges)
     points_xy = np.concatenate((snapshot.points_xy[first:], snapshot.points_xy[:first]))
     return [
         ScanSegment(points_xy[int(start) : int(end)], centre[:2], float(centre[2]), bool(is_occluded))
@@ -211,8 +226,10 @@ def _direction_of(angle):
 
 
 @numba.njit(cache=True)
-def _groups(points_xy, x, y):
+def _groups(points_xy, x, y, edges):
     """Split the scan into narrow groups of points.
+
+    A group counts as occluded if an end of it is that of the field of view or is cut off from a neighbour.
 
     Returns the first point after a gap; from there on, start and end of each group and whether it is occluded
     (M, 3), and its centre and radius (M, 3), as seen from (x, y).
@@ -232,8 +249,10 @@ def _groups(points_xy, x, y):
             width = _width(points_xy, from_, to)
             if to - from_ >= MIN_SEGMENT_BEAMS and width <= MAX_SEGMENT_WIDTH:
                 centres[count] = _centre_and_radius(points_xy, from_, to, x, y, width)
-                is_occluded = _hides(points_xy, from_ - 1, from_, x, y) or _hides(points_xy, to, to - 1, x, y)
-                groups[count] = from_ - first, to - first, int(is_occluded)
+                is_partial = piece > 0 or piece < pieces - 1
+                is_partial |= (edges[0] and from_ % size == 0) or (edges[1] and to % size == 0)
+                is_partial |= _hides(points_xy, from_ - 1, from_, x, y) or _hides(points_xy, to, to - 1, x, y)
+                groups[count] = from_ - first, to - first, int(is_partial)
                 count += 1
         start = end
     return first, groups[:count], centres[:count]
