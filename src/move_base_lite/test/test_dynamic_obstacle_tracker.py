@@ -10,7 +10,7 @@ from robot_in_picture import PERSON_RADIUS, room, scan_with_people, two_rooms, w
 from move_base_lite.costmap import observation_from_scan
 from move_base_lite.dynamic_obstacles import DynamicObstacleTracker, TrackerSettings
 from move_base_lite.dynamic_obstacles.scan_segments import ScanSegment, ScanSnapshot, segments_of
-from move_base_lite.dynamic_obstacles.track import MAX_SPEED, Track
+from move_base_lite.dynamic_obstacles.track import MAX_SPEED, MOVING_MEMORY, Track
 from planar import Pose2
 from planar.geometry.ray_casting import cast_rays
 
@@ -168,6 +168,22 @@ def test_a_sudden_reversal_is_known_from_the_next_scan(seed):
             assert rows[0][3] == pytest.approx(-1.6, abs=0.4)
 
 
+@pytest.mark.parametrize("seed", range(5))
+def test_a_person_who_stops_stays_known_and_moves_from_the_second_scan_after_starting_again(seed):
+    stop, start, speed = 1.5, 3.0, 1.6
+
+    def person_at(t):
+        return 4.0, 2.0 + speed * (min(t, stop) + max(t - start, 0.0))
+
+    found = track(room(9.0, 9.0), lambda t: Pose2(1.0, 4.5), person_at, 4.0, seed, 0.4, TrackerSettings(9.0))
+    for stamp, rows in found[10:]:
+        assert nearest_to(rows, person_at(stamp)) < 0.15
+        if stop + 0.45 < stamp < start + 0.05:
+            assert abs(rows[0][3]) < 0.3
+        if stamp > start + 1.5 * PERIOD:
+            assert rows[0][3] == pytest.approx(speed, abs=0.4)
+
+
 def test_a_person_who_leaves_the_field_of_view_keeps_radius_and_velocity():
     def person_at(t):  # at 135 degrees after 4.5 s
         return 7.0 - 1.0 * t, 5.5
@@ -190,6 +206,16 @@ def test_two_that_overlap_are_two_segments_whose_outlines_are_known_in_part_only
     segments = segments_of(ScanSnapshot(Pose2(1.0, 3.0), observation_from_scan("scan", scan), 8.0))
     pair = [each for each in segments if min(math.dist(each.centre_xy, xy) for xy in people) < 0.3]
     assert [segment.is_occluded for segment in pair] == [True, True]
+
+
+def test_a_person_who_has_stood_for_a_while_is_static():
+    def person_at(t):
+        return 3.0, 1.0 + 1.2 * min(t, 2.0)
+
+    settings = TrackerSettings(9.0)
+    found = track(room(8.0, 5.0), lambda t: Pose2(1.0, 2.0), person_at, 7.5, 0, 0.3, settings)
+    assert all(len(rows) == 1 for stamp, rows in found if 1.0 < stamp < 2.0 + MOVING_MEMORY)
+    assert not any(len(rows) for stamp, rows in found if stamp > 2.6 + MOVING_MEMORY)
 
 
 def test_an_occluded_person_is_still_predicted():
@@ -278,12 +304,6 @@ def test_doors_and_boxes_do_not_move_while_the_robot_drives_past():
     grid = with_block(with_block(two_rooms(0.9), 1.2, 2.6, 1.5, 2.9), 4.4, 1.2, 4.6, 1.4)
     found = track(grid, lambda t: Pose2(0.6 + 0.5 * t, 2.0, 0.3 * math.sin(t)), lambda t: None, 9.0)
     assert [len(rows) for _, rows in found] == [0] * len(found)
-
-
-def test_a_person_who_has_stopped_is_not_a_dynamic_obstacle_any_more():
-    found = track(room(8.0, 4.0), lambda t: Pose2(1.0, 2.0), lambda t: (3.0, 1.0 + 0.6 * min(t, 2.0)), 4.0)
-    assert len(found[19][1]) == 1
-    assert not any(len(rows) for stamp, rows in found if stamp > 3.0)
 
 
 def test_a_jump_back_of_time_resets_the_tracker():

@@ -30,6 +30,10 @@ MIN_RADIUS_RATIO, MAX_RADIUS_RATIO = 0.98, 1.1
 MAX_KNOWN_RADIUS_RATIO = 1.02
 # Ratio of a segment's radius to a moving object's above which the segment is of several objects.
 MERGED_RATIO = 1.2
+# Time after its last motion for which an object counts as dynamic, as it may start again [s].
+MOVING_MEMORY = 4.0
+# Displacement from which on a moving object may be expected to start again: shadows of others move less [m].
+MIN_MOBILE_TRAVEL = 0.5
 # Points within this distance of the object belong to it [m].
 COVER_MARGIN = 0.1
 
@@ -61,7 +65,12 @@ class Track:
         self._first_xy, self.is_radius_known = self._position, not segment.is_occluded
         self.is_moving = self.is_static = False
         self.moved_at = -math.inf
-        self._entered_free_space = False
+        self._entered_free_space = self._is_mobile = False
+
+    @property
+    def is_dynamic(self) -> bool:
+        """Whether the object moves or has moved lately, so that it may start again at any time."""
+        return self.is_moving or (self._is_mobile and self._stamp - self.moved_at <= MOVING_MEMORY)
 
     def predict(self, stamp: float) -> None:
         """Predict the state at a time.
@@ -118,7 +127,7 @@ class Track:
         """
         reach = self._radius + segment.radius
         return (
-            self.is_moving
+            self.is_dynamic
             and segment.radius > MERGED_RATIO * self._radius
             and math.dist(self._position, segment.centre_xy) < reach
         )
@@ -174,6 +183,7 @@ class Track:
             self.is_static = has_never_moved and (is_old or speed < MIN_TRAVEL_SPEED)
         if self.is_moving:
             self.moved_at = self._stamp
+            self._is_mobile |= math.dist(self._position, self._first_xy) >= MIN_MOBILE_TRAVEL
 
     def _correct_radius(self, segment: ScanSegment) -> None:
         """Correct the radius; one that was seen in part only was a lower bound, and the centre a guess."""
@@ -190,12 +200,12 @@ class Track:
     def _allow_for_manoeuvre(self, innovation: float) -> None:
         """Make the velocity uncertain if the innovation [m] is too large for the track.
 
-        A moving object has turned since the last match, by as much as the innovation shows. The segment of
-        another one may have shifted because something occludes it.
+        A dynamic object has turned or started since the last match, by as much as the innovation shows. The
+        segment of another one may have shifted because something occludes it.
         """
         if innovation <= MANOEUVRE_SIGMAS * math.sqrt(self._covariance[0, 0] + MEASUREMENT_SIGMA**2):
             return
-        if not self.is_moving:
+        if not self.is_dynamic:
             self._covariance[1, 1] += INITIAL_VELOCITY_SIGMA**2
             return
         dt = self._stamp - self.seen_at

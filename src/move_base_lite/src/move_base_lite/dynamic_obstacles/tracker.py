@@ -16,7 +16,7 @@ from move_base_lite.dynamic_obstacles.scan_segments import (
     hidden_segment,
     segments_of,
 )
-from move_base_lite.dynamic_obstacles.track import MIN_FREE_SHARE, MIN_TRAVEL_SPEED, Track
+from move_base_lite.dynamic_obstacles.track import MIN_FREE_SHARE, MIN_TRAVEL_SPEED, MOVING_MEMORY, Track
 from planar import Pose2
 from planar.deprecation import renamed_method
 
@@ -27,8 +27,6 @@ REFERENCE_AGE, MIN_REFERENCE_AGE = 1.0, 0.3
 MAX_VISIBLE_AGE, MAX_OCCLUDED_AGE = 0.3, 2.5
 # Time without a matching segment after which a track matches newly appeared segments only [s].
 MAX_MATCH_AGE = 0.3
-# Time for which an object that has moved is removed from the scan [s].
-MOVING_MEMORY = 4.0
 # Age of the scan in which a newly appeared segment must be missing [s].
 APPEARANCE_AGE = 0.15
 # Distance from a track's predicted outline within which points of a wide segment may belong to it [m].
@@ -98,7 +96,7 @@ class DynamicObstacleTracker:
         Returns:
             Rows (N, 5) of x, y, vx, vy, radius in the odom frame [m, m/s].
         """
-        moving = [track.state_at(now) for track in self._tracks if track.is_moving]
+        moving = [track.state_at(now) for track in self._tracks if track.is_dynamic]
         return np.array(moving) if moving else NO_DYNAMIC_OBSTACLES
 
     look = renamed_method("look", "update")
