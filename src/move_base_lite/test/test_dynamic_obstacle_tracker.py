@@ -208,6 +208,18 @@ def test_two_that_overlap_are_two_segments_whose_outlines_are_known_in_part_only
     assert [segment.is_occluded for segment in pair] == [True, True]
 
 
+def test_a_radius_that_was_seen_often_grows_slowly():
+    def segment(radius):
+        points_xy = np.array([[3.0 - radius, 1.0], [3.0, 1.0 - radius], [3.0, 1.0 + radius]])
+        return ScanSegment(points_xy, np.array([3.0, 1.0]), radius, False)
+
+    track = Track(segment(0.5), 0.0)
+    for step in range(1, 41):
+        track.predict(step * PERIOD)
+        track.correct(segment(0.5 if step < 20 else 0.8), True, True)
+    assert 0.5 < track.state_at(4.0)[4] < 0.6
+
+
 def test_a_person_who_has_stood_for_a_while_is_static():
     def person_at(t):
         return 3.0, 1.0 + 1.2 * min(t, 2.0)

@@ -26,10 +26,10 @@ MAX_TRAVEL_TIME = 0.5
 MIN_FREE_SHARE, MIN_VACATED_SHARE = 0.5, 0.9
 # Limits of a radius's change from scan to scan: partial occlusion shrinks a segment, a neighbour enlarges it.
 MIN_RADIUS_RATIO, MAX_RADIUS_RATIO = 0.98, 1.1
-# The upper limit once the whole object has been seen.
-MAX_KNOWN_RADIUS_RATIO = 1.02
+# Relative growth from scan to scan of a radius that was seen as a whole, times the number of scans since.
+MAX_KNOWN_RADIUS_GROWTH = 0.2
 # Ratio of a segment's radius to a moving object's above which the segment is of several objects.
-MERGED_RATIO = 1.2
+MERGED_RATIO = 1.1
 # Time after its last motion for which an object counts as dynamic, as it may start again [s].
 MOVING_MEMORY = 4.0
 # Displacement from which on a moving object may be expected to start again: shadows of others move less [m].
@@ -66,6 +66,7 @@ class Track:
         self.is_moving = self.is_static = False
         self.moved_at = -math.inf
         self._entered_free_space = self._is_mobile = False
+        self._sightings = 0
 
     @property
     def is_dynamic(self) -> bool:
@@ -189,7 +190,10 @@ class Track:
         """Correct the radius; one that was seen in part only was a lower bound, and the centre a guess."""
         if segment.is_occluded or self.is_radius_known:
             min_ratio = 1.0 if segment.is_occluded else MIN_RADIUS_RATIO
-            max_ratio = MAX_KNOWN_RADIUS_RATIO if self.is_radius_known else MAX_RADIUS_RATIO
+            max_ratio = MAX_RADIUS_RATIO
+            if self.is_radius_known:
+                self._sightings += 1
+                max_ratio = 1.0 + MAX_KNOWN_RADIUS_GROWTH / self._sightings
             self._radius *= min(max(segment.radius / self._radius, min_ratio), max_ratio)
             return
         self.is_radius_known = True
