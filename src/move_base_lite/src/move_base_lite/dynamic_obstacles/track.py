@@ -66,7 +66,7 @@ class Track:
         self.is_moving = self.is_static = False
         self.moved_at = -math.inf
         self._entered_free_space = self._is_mobile = False
-        self._sightings = 0
+        self._observations = 0
 
     @property
     def is_dynamic(self) -> bool:
@@ -192,8 +192,8 @@ class Track:
             min_ratio = 1.0 if segment.is_occluded else MIN_RADIUS_RATIO
             max_ratio = MAX_RADIUS_RATIO
             if self.is_radius_known:
-                self._sightings += 1
-                max_ratio = 1.0 + MAX_KNOWN_RADIUS_GROWTH / self._sightings
+                self._observations += 1
+                max_ratio = 1.0 + MAX_KNOWN_RADIUS_GROWTH / self._observations
             self._radius *= min(max(segment.radius / self._radius, min_ratio), max_ratio)
             return
         self.is_radius_known = True

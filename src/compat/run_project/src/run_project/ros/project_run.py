@@ -197,13 +197,7 @@ class ProjectRun:
                 return f"{what} {STALLED_SECONDS:g} s"
             if not is_master_online():
                 return "the ROS master has ended"
-            time.sleep(self._pause())
-
-    def _pause(self) -> float:
-        """Wall time until the next look [s]."""
-        if self.observer.simulated_time == 0.0:
-            return STARTING_POLL_SECONDS
-        return ENDING_POLL_SECONDS if self.observer.record.all_goals_ended else POLL_SECONDS
+            time.sleep(_pause(observer))
 
     def _list_processes(self, now: float) -> Tuple[List[ListedProcess], List[psutil.Process]]:
         """All processes of the run but the helpers, and of these the project's own nodes."""
@@ -295,6 +289,13 @@ class ProjectRun:
     def _is_of_project(self, command: List[str]) -> bool:
         program = program_of(command)
         return str(self._project_command.work) in program and not program.endswith(SETUP_TOOL)
+
+
+def _pause(observer: Observer) -> float:
+    """Wall time until the next look at the run [s]."""
+    if observer.simulated_time == 0.0:
+        return STARTING_POLL_SECONDS
+    return ENDING_POLL_SECONDS if observer.record.all_goals_ended else POLL_SECONDS
 
 
 def _interrupt(processes: List[psutil.Process]) -> None:

@@ -59,27 +59,40 @@ class _NewConnections:
     Args:
         search: Finds missing connections.
         remark: Called with a reason why the run may not be repeatable.
-
-    Attributes:
-        is_one_lost: Whether a receiver has closed a connection since all were made.
     """
 
     def __init__(self, search: NodeSearch, remark: Callable[[str], None]):
         self._search, self._remark = search, remark
         self._awaited_search, self._since = 0, 0.0
         self._unconnectable: Set[str] = set()
-        self.is_one_lost = False
+        self._is_one_lost, self._check_at = False, 0.0
 
     def check_again(self) -> None:
         """Have a search begin at the next barrier."""
-        self._awaited_search, self.is_one_lost = 0, False
+        self._awaited_search, self._is_one_lost = 0, False
 
     def note_lost(self) -> None:
         """Have a search begin now: a receiver has closed a connection, and may subscribe again."""
-        self._awaited_search, self.is_one_lost = 0, True
+        self._awaited_search, self._is_one_lost = 0, True
         self._search.check_all_connections()
 
-    def are_made(self) -> bool:
+    def are_missing(self, stamp: float, is_due: bool, is_graph_new: bool) -> bool:
+        """Return whether to wait for connections.
+
+        Args:
+            stamp: Present simulated time [s].
+            is_due: Whether nodes start, and this barrier is one at which their connections are checked.
+            is_graph_new: Whether the graph has changed since the last barrier.
+        """
+        is_recent = 0.0 < self._check_at - stamp <= CHECK_SECONDS
+        if not (is_due and (is_graph_new or not is_recent) or self._is_one_lost):
+            return False
+        if not self._are_made():
+            return True
+        self._check_at = stamp + CHECK_SECONDS - 1e-6
+        return False
+
+    def _are_made(self) -> bool:
         """Return whether a search that has begun at this barrier found all connections made."""
         wall = time.monotonic()
         if not self._awaited_search:
@@ -138,7 +151,7 @@ class PacedNodes:
         self._sentences_topic = rospy.Publisher(PACE_TOPIC, String, queue_size=1, latch=True)
         self._submitted = self._seen_changes = 0
         self._connections = _NewConnections(search, remark)
-        self._settled_at, self._check_at, self._is_graph_new = 0.0, 0.0, False
+        self._settled_at, self._is_graph_new = 0.0, False
         self._wait: Optional[AwaitedRest] = None
         self._is_answered = False
         self._sent_before: SentCounts = {}
@@ -205,12 +218,9 @@ class PacedNodes:
             self._settled_at, self._is_graph_new = stamp + SETTLING_SECONDS, True
             self._connections.note_lost()
         is_settling = stamp < self._settled_at
-        is_check_due = self._is_graph_new or stamp >= self._check_at
-        must_connect = is_settling and before is Before.CLOCK and is_check_due
-        if must_connect or self._connections.is_one_lost:
-            if not self._connections.are_made():
-                return False
-            self._check_at = stamp + CHECK_SECONDS - 1e-6
+        is_check_due = is_settling and before is Before.CLOCK
+        if self._connections.are_missing(stamp, is_check_due, self._is_graph_new):
+            return False
         if not self._barrier.is_begun:
             sent = _sent(self._nodes)
             must_look = is_settling or has_news or before in (Before.SENSORS, Before.TICK)
@@ -252,7 +262,7 @@ class PacedNodes:
     def reset_time(self) -> None:
         """Restart simulated time at 0."""
         self._barrier.reset()
-        self._settled_at, self._check_at = SETTLING_SECONDS, 0.0
+        self._settled_at = SETTLING_SECONDS
 
     def _chosen(self, with_synchronised: bool) -> Set[str]:
         """Return the nodes that have to rest."""
