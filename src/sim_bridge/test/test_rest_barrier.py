@@ -18,6 +18,7 @@ from sim_bridge.rest.barrier import (
 from sim_bridge.rest.threads import (
     WATCH_SECONDS,
     WATCHES,
+    KernelThreads,
     PollingThreads,
     ProcessThreads,
     has_ended,
@@ -371,6 +372,23 @@ def test_the_threads_of_a_process_with_the_library_take_turns(tmp_path):
     (tmp_path / "7" / "environ").write_bytes(b"HOME=/root\0LD_PRELOAD=/ws/devel/lib/libordered_wake.so\0")
     assert ProcessThreads(7, tmp_path).take_turns
     assert not ProcessThreads(8, tmp_path).take_turns
+
+
+def test_the_kernel_delivers_messages_while_one_of_its_threads_runs(tmp_path):
+    for number, name in (("14", "ksoftirqd/0"), ("22", "ksoftirqd/1"), ("30", "node")):
+        (tmp_path / number).mkdir()
+        (tmp_path / number / "comm").write_text(f"{name}\n")
+        (tmp_path / number / "stat").write_text(f"{number} ({name}) S 2")
+    threads = KernelThreads(tmp_path)
+    assert threads.are_resting()
+    (tmp_path / "30" / "stat").write_text("30 (node) R 2")
+    assert threads.are_resting()
+    (tmp_path / "22" / "stat").write_text("22 (ksoftirqd/1) R 2")
+    assert not threads.are_resting()
+
+
+def test_where_its_threads_are_not_visible_the_kernel_is_not_waited_for(tmp_path):
+    assert KernelThreads(tmp_path).are_resting()
 
 
 def test_an_ended_process_is_noticed(program):

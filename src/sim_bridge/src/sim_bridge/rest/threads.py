@@ -3,6 +3,7 @@
 import ctypes
 import os
 import time
+from contextlib import suppress
 from pathlib import Path
 from typing import Callable, Dict, FrozenSet, List, Optional, Tuple
 
@@ -12,6 +13,8 @@ WAITING_STATES = frozenset(b"SItTXZ")
 STAT_BYTES = 128
 PROC = Path("/proc")
 TURNS_LIBRARY = b"libordered_wake"
+# Names of the kernel's threads, one for each processor, to which it leaves the network when it is busy.
+DELIVERING_THREADS = b"ksoftirqd/"
 # Time between two looks at a thread in which one that looks at the clock each millisecond has usually run
 # [wall s], and number of such pairs of looks after which a thread is known.
 WATCH_SECONDS, WATCHES = 0.0009, 20
@@ -130,6 +133,28 @@ class ProcessThreads:
             self._links = -1
             return True  # the thread has ended
         return _state_in(stat) in WAITING_STATES
+
+
+class KernelThreads:
+    """The kernel's threads that deliver messages on a busy machine, which may take milliseconds.
+
+    While such a thread is ready to run, what processes send each other waits for it. Not visible in
+    containers.
+
+    Args:
+        proc: Folder of the kernel's process information.
+    """
+
+    def __init__(self, proc: Path = PROC):
+        self._files: List[int] = []
+        for folder in proc.glob("[0-9]*"):
+            with suppress(OSError):
+                if (folder / "comm").read_bytes().startswith(DELIVERING_THREADS):
+                    self._files.append(os.open(folder / "stat", os.O_RDONLY | os.O_CLOEXEC))
+
+    def are_resting(self) -> bool:
+        """Return whether none is running or ready to run."""
+        return all(_state_in(os.pread(file, STAT_BYTES, 0)) in WAITING_STATES for file in self._files)
 
 
 class PollingThreads:

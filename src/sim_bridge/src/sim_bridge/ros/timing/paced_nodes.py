@@ -22,7 +22,7 @@ from sim_bridge.rest.barrier import (
 )
 from sim_bridge.rest.rules import PaceRule
 from sim_bridge.rest.sent_messages import TICKS, SentCounts, are_any_woken, sent_counts
-from sim_bridge.rest.threads import ProcessThreads
+from sim_bridge.rest.threads import KernelThreads, ProcessThreads
 from sim_bridge.ros.call_queue import CallQueue
 from sim_bridge.ros.timing.connection_monitor import CONNECT_SECONDS
 from sim_bridge.ros.timing.node_search import MASTER, FoundNode, NodeSearch
@@ -32,7 +32,7 @@ from sim_bridge.ros.timing.stamped_messages import StampedMessages
 PACE_TOPIC = "/simulation/pace"
 # Name under which the synchronised nodes are waited for, in whose messages the others may have a part.
 SYNCHRONISED = "synchronised nodes"
-# The same for messages of the simulation that have not arrived yet.
+# The same for messages that have not arrived yet.
 MESSAGES = "messages"
 # Time without a new topic or service after which nodes have started [simulated s].
 SETTLING_SECONDS = 2.0
@@ -139,7 +139,7 @@ class PacedNodes:
     ):
         self._calls, self._remark, self._search, self._messages = calls, remark, search, messages
         self._paces_all, self._named = paces_all, frozenset(rules)
-        self._barrier = RestBarrier()
+        self._barrier, self._kernel = RestBarrier(), KernelThreads()
         self._threads: Dict[str, ProcessThreads] = {}
         self._ended: Dict[str, int] = {}
         self._nodes: Dict[str, FoundNode] = {}
@@ -246,7 +246,7 @@ class PacedNodes:
             quiet = SETTLING_QUIET_SECONDS, False
         nodes = {name: self._rest_of(name, self._threads[name]) for name in sorted(chosen, reverse=True)}
         nodes[SYNCHRONISED] = lambda: self._is_answered
-        nodes[MESSAGES] = lambda: not has_undelivered(chosen)
+        nodes[MESSAGES] = lambda: self._kernel.are_resting() and not has_undelivered(chosen)
         return AwaitedRest(nodes, self._awaited() | {SYNCHRONISED, MESSAGES}, *quiet)
 
     @property
