@@ -70,11 +70,13 @@ class NodeSearch:
         self._appeared: Dict[str, float] = {}
         self._thread: Optional[threading.Thread] = None
 
-    def start(self) -> None:
-        """Search from now on."""
+    def start(self) -> bool:
+        """Search from now on; return whether it has not been searched before."""
+        is_first = self._thread is None
         if self._thread is None:
             self._thread = threading.Thread(target=self._run, daemon=True)
             self._thread.start()
+        return is_first
 
     def request(self) -> int:
         """Search at once, for missing connections, too; return the number that ``finished`` reaches then."""

@@ -184,9 +184,8 @@ class PacedNodes:
     def set_nodes(self, names: FrozenSet[str], synchronised: FrozenSet[str]) -> None:
         """Set the names of the nodes to wait for, and of those for which the simulation waits elsewhere."""
         self._wanted, self._synchronised = names | (self._named - synchronised), synchronised
-        if self.are_any:
+        if self.are_any and self._search.start():
             install(notes_receipt=True)
-            self._search.start()
 
     @property
     def are_any(self) -> bool:
