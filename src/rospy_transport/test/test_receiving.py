@@ -1,7 +1,9 @@
 """What subscribers and services of rospy do with the functions of ``install``."""
 
+import socket
 import threading
 import time
+from types import SimpleNamespace
 
 import pytest
 import rospy
@@ -168,8 +170,33 @@ def test_a_message_is_unprocessed_until_its_callback_returns(publish, subscribe,
     wait_until(lambda: publisher.get_num_connections() == 1)
     wait_until(lambda: not connections.has_unprocessed())
     publisher.publish("one")
-    assert connections.has_unprocessed(), "it is in the socket, or read"
-    assert begun.wait(5.0)
+    wait_until(connections.has_unprocessed)
+    while not begun.is_set():
+        assert connections.has_unprocessed(), "it is in the socket, or read"
     assert connections.has_unprocessed(), "its callback has not returned"
     may_end.set()
     wait_until(lambda: not connections.has_unprocessed())
+
+
+def test_a_message_that_is_read_during_the_look_is_unprocessed(monkeypatch):
+    """A thread may take it from the socket after the look at its connection, and before that at the socket."""
+    near, far = socket.socketpair()
+    far.sendall(b"one")
+
+    class Reading:
+        """A connection whose thread reads the message when somebody has looked whether it does."""
+
+        socket = near
+        was_seen = False
+
+        @property
+        def is_processing(self):
+            was_seen, self.was_seen = self.was_seen, True
+            if not was_seen:
+                near.recv(3)
+            return was_seen
+
+    topic = SimpleNamespace(connections=[Reading()])
+    monkeypatch.setattr(connections, "get_topic_manager", lambda: SimpleNamespace(subs={TOPIC: topic}))
+    with near, far:
+        assert connections.has_unprocessed()

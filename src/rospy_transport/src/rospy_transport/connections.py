@@ -121,16 +121,17 @@ def has_unprocessed() -> bool:
     may wait for milliseconds between reading a message and its callback. It needs ``notes_receipt`` of
     ``install``.
     """
+    made = [each for topic in list(get_topic_manager().subs.values()) for each in list(topic.connections)]
     ends: Dict[int, socket.socket] = {}
     readable = select.poll()
-    for subscription in list(get_topic_manager().subs.values()):
-        for connection in list(subscription.connections):
-            if getattr(connection, "is_processing", False):
-                return True
-            if (number := _file_number(connection)) >= 0:
-                ends[number] = connection.socket
-                readable.register(number, select.POLLIN)
-    return any(_bytes_in(ends[number], termios.FIONREAD) for number, _ in readable.poll(0))
+    for connection in made:
+        if (number := _file_number(connection)) >= 0:
+            ends[number] = connection.socket
+            readable.register(number, select.POLLIN)
+    if any(_bytes_in(ends[number], termios.FIONREAD) for number, _ in readable.poll(0)):
+        return True
+    # Afterwards, for a message is noted before it is taken from its socket.
+    return any(getattr(each, "is_processing", False) for each in made)
 
 
 def has_undelivered(receivers: Container[str]) -> bool:
