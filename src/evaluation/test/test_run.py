@@ -170,3 +170,18 @@ def test_messages_in_flight_are_not_waited_for_if_time_stands_still(run, monkeyp
     with run:
         assert run.conclude(DONE) == 0
     assert (run.folder / "trace.txt").exists()
+
+
+def test_messages_that_have_arrived_are_part_of_the_trace(run, monkeypatch):
+    """A thread that is behind that of the ground truth processes one when the trace has settled."""
+    looks = iter((True, True, False))
+
+    def has_unprocessed():
+        run.events.publish(TruthUpdated(0.5, Pose2(), publication=published(0.5, "/late")))
+        return next(looks)
+
+    monkeypatch.setattr(run_module, "has_unprocessed", has_unprocessed)
+    with run:
+        assert run.conclude(DONE) == 0
+    assert next(looks, "all were made") == "all were made"
+    assert "/late" in (run.folder / "trace.txt").read_text()

@@ -22,6 +22,8 @@ from evaluation.verdict import Verdict
 from planar import PlanarError, SettingsError
 from planar_ros.lockstep.client import OBSERVERS_PARAMETER
 from planar_ros.node.runner import init_node
+from rospy_transport.connections import has_unprocessed
+from rospy_transport.replacements import install
 from run_report import summary, write_report
 from supervision.command_line import words
 from supervision.display import Display
@@ -40,6 +42,8 @@ NODE = "referee"
 REPORT_SECONDS = 60.0
 # Time in which messages that are in flight at the end of the run are waited for [s].
 SETTLE_SECONDS = 1.0
+# Time in which those that have arrived are processed, on a very busy machine [s].
+PROCESSING_SECONDS = 10.0
 # Time that views are left open after the verdict [s].
 VIEW_SECONDS = 8.0
 NO_DISPLAY = "--rviz: there is no display (DISPLAY is not set); --web shows the run in the browser"
@@ -161,10 +165,12 @@ class Run:
         return 0 if verdict.success else 1
 
     def _await_messages_in_flight(self) -> None:
-        """Wait for what was published before the end, such as the outcome of the last goal."""
-        deadline = time.monotonic() + SETTLE_SECONDS
-        while not self._trace.is_settled() and time.monotonic() < deadline:
-            time.sleep(0.01)
+        """Wait until what was published before the end is processed, such as the outcome of the last goal.
+
+        Each topic has a thread, and any of them may be behind that of the ground truth.
+        """
+        _wait_until(self._trace.is_settled, SETTLE_SECONDS)
+        _wait_until(lambda: not has_unprocessed(), PROCESSING_SECONDS)
 
     def _bring_up(self) -> None:
         self.display.print(f"run folder {self.folder}")
@@ -190,6 +196,7 @@ class Run:
 
     def _subscribe(self) -> None:
         """Make this process a node and observe the run."""
+        install(notes_receipt=True)
         init_node(NODE, log_level=rospy.ERROR)
         clock = (self._clock_monitor,) if self._launch.is_simulated else ()
         observe(self._trace, *clock, self._judge, self._recorder, *self._consumers)
@@ -235,6 +242,12 @@ class Run:
         self.result.add(**summary(record))
         self.result.missing = write_report(self.folder, self.result.content, record, self._options.gif)
         self.result.write()
+
+
+def _wait_until(holds: Callable[[], bool], seconds: float) -> None:
+    deadline = time.monotonic() + seconds
+    while not holds() and time.monotonic() < deadline:
+        time.sleep(0.005)
 
 
 def _is_time_simulated() -> bool:
