@@ -179,7 +179,7 @@ def test_a_message_is_unprocessed_until_its_callback_returns(publish, subscribe,
 
 
 def test_a_message_that_is_read_during_the_look_is_unprocessed(monkeypatch):
-    """A thread may take it from the socket after the look at its connection, and before that at the socket."""
+    """A thread may take it from the socket after the look at its connection, before that at the socket."""
     near, far = socket.socketpair()
     far.sendall(b"one")
 
