@@ -17,6 +17,7 @@ from run_project.ros.processes import (
     BusyProcesses,
     ListedProcess,
     WallSleeps,
+    is_simulator,
     starting_seconds,
 )
 from run_project.stand_ins import STAND_INS
@@ -132,3 +133,18 @@ def test_nodes_are_asked_for_their_process_until_they_answer():
     assert nodes.names == {"a", "b"}
     nodes.update(["/b"])
     assert (nodes.pids, nodes.names) == (frozenset(), {"b"})
+
+
+@pytest.mark.parametrize(
+    ("command", "expected"),
+    [
+        (["python3", "/opt/ros/lib/gazebo_ros/gzserver", "-e", "ode", "home.world"], True),
+        (["gzserver", "home.world"], True),
+        (["bash", "/opt/ros/lib/gazebo_ros/debug", "home.world"], True),
+        (["python3", "/opt/ros/lib/gazebo_ros/spawn_model", "-urdf"], False),
+        (["python3", "/opt/ros/bin/roslaunch", "robot", "gazebo"], False),
+        ([], False),
+    ],
+)
+def test_simulators_are_known_by_their_program(command, expected):
+    assert is_simulator(command) == expected

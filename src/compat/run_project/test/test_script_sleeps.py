@@ -81,6 +81,23 @@ def test_a_script_continues_when_the_simulated_time_has_passed():
     assert ends[1] - ends[0] >= 500.0
 
 
+@pytest.mark.parametrize("is_awaited", [False, True])
+def test_before_a_simulator_runs_a_sleep_ends_when_all_programs_have_come_up(is_awaited):
+    """Afterwards the next window must not open before that time begins, on some machines only."""
+    clock = [0.0]
+    with ScriptSleeps(lambda: clock[0], lambda: None) as sleeps:
+        sleeper = threading.Thread(target=sleeps.sleep, args=(1000.0,))
+        sleeper.start()
+        deadline = time.monotonic() + (1.0 if is_awaited else LIMIT_SECONDS)
+        while sleeper.is_alive() and time.monotonic() < deadline:
+            sleeps.update(is_awaited)
+            time.sleep(0.01)
+        assert sleeper.is_alive() == is_awaited
+        clock[0] = 1001.0
+        sleeper.join(LIMIT_SECONDS)
+        assert not sleeper.is_alive()
+
+
 def test_the_end_of_the_run_ends_a_sleep():
     with ScriptSleeps(lambda: 0.0, lambda: None) as sleeps:
         sleeper = threading.Thread(target=sleeps.sleep, args=(1e6,))

@@ -49,8 +49,8 @@ class ScriptTime:
 class ScriptSleeps:
     """Serves the stand-in for ``sleep``: context in which scripts sleep by simulated time.
 
-    Before simulated time begins they sleep until the programs started so far have come up, and not longer
-    than they want.
+    Before a simulator is started they sleep until the programs started so far have come up, and not longer
+    than they want. From then on, and until its time begins, they sleep by wall time.
 
     Args:
         simulated_time: Returns the simulated time [s].
@@ -86,9 +86,9 @@ class ScriptSleeps:
             self._server.shutdown()
             self._server.server_close()
 
-    def update(self, is_starting: bool) -> None:
-        """Report whether programs are starting."""
-        self._quiet_reports = 0 if is_starting else self._quiet_reports + 1
+    def update(self, is_awaited: bool) -> None:
+        """Report whether programs are starting, or a simulator runs, whose time begins soon."""
+        self._quiet_reports = 0 if is_awaited else self._quiet_reports + 1
 
     def sleep(self, seconds: float) -> None:
         """Wait for a time [s], or until the context is left."""

@@ -18,6 +18,8 @@ BUSY_NICENESS = 15
 # Ages at which a launcher without processes, or a node that it has started, and any other program that is not
 # in the graph, such as a shell that reads set-up files, no longer count as starting [s].
 NODE_SECONDS, PROGRAM_SECONDS = 30.0, 3.0
+# Programs with the simulation's clock.
+SIMULATORS = frozenset(("gazebo", "gzserver", "debug"))
 SHELLS = ("", "bash", "sh", "dash", "zsh")
 # A wait of one thread from which on it counts as long [s]: those of roscpp and rospy last half a second.
 LONG_SLEEP_SECONDS = 1.0
@@ -103,6 +105,11 @@ def program_of(command: List[str]) -> str:
     if name in SHELLS:
         return ""
     return command[1] if name.startswith("python") and len(command) > 1 else "".join(command[:1])
+
+
+def is_simulator(command: List[str]) -> bool:
+    """Whether a command line is that of a simulator."""
+    return not SIMULATORS.isdisjoint(Path(word).name for word in command[:2])
 
 
 def starting_seconds(each: ListedProcess, has_children: bool, is_node: bool) -> float:

@@ -22,6 +22,7 @@ from run_project.ros.processes import (
     BusyProcesses,
     ListedProcess,
     WallSleeps,
+    is_simulator,
     list_processes,
     program_of,
     starting_seconds,
@@ -176,7 +177,7 @@ class ProjectRun:
             listed, processes = self._list_processes(now)
             is_starting = self._is_something_starting(listed)
             self._limit.update(now, is_starting, bool(windows))
-            self._sleeps.update(is_starting)
+            self._sleeps.update(is_starting or any(is_simulator(each.command) for each in listed))
             self._display.show(observer.status())
             if observer.simulated_time != moved_time:
                 moved_wall, moved_time = now, observer.simulated_time
