@@ -4,7 +4,8 @@
     python3 tests/benchmarks/foreign_projects.py CHECKOUT... [--beside WORKSPACE] [--busy 2] [--json FILE]
 
 With ``--busy``, so many busy processes run beside the second run. Two runs have the same events if goals,
-markers and checks come in the same order; times may differ by as much as is printed. ``--beside`` names a
+markers and checks come in the same order, where events of one instant have none, and with the same texts but
+for measured positions; times may differ by as much as is printed. ``--beside`` names a
 workspace of another version, set up, whose wall time is the base of the ratio.
 """
 
@@ -25,6 +26,8 @@ from unsynchronised_nodes import ROOT
 # Longest run [wall s].
 RUN_SECONDS = 900.0
 VERDICT = re.compile(r"^(SUCCESS|FAILURE): (.*)$", re.MULTILINE)
+# What move_base says of a failure, with the position of the robot.
+POSITION = re.compile(r" from the robot at \([^)]*\)")
 # An event with its simulated time; not the distance driven, which is printed by wall time, and windows.
 EVENT = re.compile(r"^ *([0-9.]+) s  (?!.* driven|window )(.+)$", re.MULTILINE)
 ROW = "{:40} {:8} {:8} {:8} {:>6} {:>12} {:>7} {:>7} {:>7} {:>6}"
@@ -50,7 +53,12 @@ class Run:
 
     @property
     def texts(self) -> List[str]:
-        return [text for _, text in self.events]
+        """Texts in order; those of one instant by alphabet, for they come from different nodes."""
+        return [POSITION.sub("", text) for _, text in sorted(self.events)]
+
+    @property
+    def times(self) -> List[float]:
+        return [at for at, _ in sorted(self.events)]
 
 
 def run_project(workspace: Path, checkout: Path) -> Run:
@@ -71,7 +79,7 @@ def apart(first: Run, second: Run) -> Optional[float]:
     """Longest time between the same event of two runs [simulated s]; None if they have other events."""
     if first.texts != second.texts:
         return None
-    return max((abs(a - b) for (a, _), (b, _) in zip(first.events, second.events)), default=0.0)
+    return max((abs(a - b) for a, b in zip(first.times, second.times)), default=0.0)
 
 
 def print_row(checkout: Path, first: Run, second: Run, beside: Optional[Run]) -> None:
