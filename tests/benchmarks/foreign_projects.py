@@ -26,7 +26,7 @@ from unsynchronised_nodes import ROOT
 # Longest run [wall s].
 RUN_SECONDS = 900.0
 VERDICT = re.compile(r"^(SUCCESS|FAILURE): (.*)$", re.MULTILINE)
-# What move_base says of a failure, with the position of the robot.
+# Part of move_base's report of a failure.
 POSITION = re.compile(r" from the robot at \([^)]*\)")
 # An event with its simulated time; not the distance driven, which is printed by wall time, and windows.
 EVENT = re.compile(r"^ *([0-9.]+) s  (?!.* driven|window )(.+)$", re.MULTILINE)

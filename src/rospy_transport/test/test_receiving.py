@@ -184,7 +184,7 @@ def test_a_message_that_is_read_during_the_look_is_unprocessed(monkeypatch):
     far.sendall(b"one")
 
     class Reading:
-        """A connection whose thread reads the message when somebody has looked whether it does."""
+        """A connection whose thread reads the message as soon as another has looked whether it does."""
 
         socket = near
         was_seen = False
