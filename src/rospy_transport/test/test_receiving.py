@@ -200,3 +200,24 @@ def test_a_message_that_is_read_during_the_look_is_unprocessed(monkeypatch):
     monkeypatch.setattr(connections, "get_topic_manager", lambda: SimpleNamespace(subs={TOPIC: topic}))
     with near, far:
         assert connections.has_unprocessed()
+
+
+def test_a_connection_may_be_closed_during_the_look(monkeypatch):
+    """rospy closes it in its own thread, when the publisher has ended."""
+    near, far = socket.socketpair()
+
+    class Closing:
+        """A connection that is closed after the first look at its socket."""
+
+        was_seen = False
+
+        @property
+        def socket(self):
+            was_seen, self.was_seen = self.was_seen, True
+            return None if was_seen else near
+
+    topic = SimpleNamespace(connections=[Closing()])
+    monkeypatch.setattr(connections, "get_topic_manager", lambda: SimpleNamespace(subs={TOPIC: topic}))
+    far.sendall(b"one")
+    with near, far:
+        assert connections.has_unprocessed()

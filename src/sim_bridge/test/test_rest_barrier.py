@@ -325,6 +325,17 @@ def test_threads_that_look_at_the_clock_are_learned(native_program, arguments, p
         process.wait()
 
 
+def test_a_node_that_ends_between_two_looks_at_its_threads_waits_for_no_clock(tmp_path):
+    (tmp_path / "7" / "task" / "7").mkdir(parents=True)
+    (tmp_path / "7" / "exe").symlink_to("/opt/ros/lib/pick_objects")
+    threads = ProcessThreads(7, tmp_path)
+    assert threads.may_poll()
+    shutil.rmtree(tmp_path / "7")
+    assert not threads.may_poll()
+    with pytest.raises(ProcessLookupError):
+        threads.are_resting()
+
+
 def test_a_thread_that_runs_beside_one_that_looks_at_the_clock_is_noticed(tmp_path):
     """One that was read before may have handed it work for a shorter time than looks at the clock take."""
     for name in ("8", "9"):

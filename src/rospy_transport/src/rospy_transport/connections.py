@@ -125,8 +125,9 @@ def has_unprocessed() -> bool:
     ends: Dict[int, socket.socket] = {}
     readable = select.poll()
     for connection in made:
-        if (number := _file_number(connection)) >= 0:
-            ends[number] = connection.socket
+        end = getattr(connection, "socket", None)  # once: another thread may close it
+        if end is not None and (number := end.fileno()) >= 0:
+            ends[number] = end
             readable.register(number, select.POLLIN)
     if any(_bytes_in(ends[number], termios.FIONREAD) for number, _ in readable.poll(0)):
         return True

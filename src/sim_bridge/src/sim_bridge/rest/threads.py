@@ -59,9 +59,11 @@ class ProcessThreads:
     def may_poll(self) -> bool:
         """Return whether a thread may look at the clock again and again, and learn it at this barrier.
 
-        Threads of Python wait for the clock itself.
+        Threads of Python wait for the clock itself, those of a process that has ended for nothing.
         """
-        return self._polling is not None and self._polling.may_be_any(self._names())
+        with suppress(ProcessLookupError):
+            return self._polling is not None and self._polling.may_be_any(self._names())
+        return False
 
     def begin_barrier(self) -> None:
         """Discard the last look: the threads may have run since, for a message or the time."""
