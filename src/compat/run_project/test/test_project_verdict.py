@@ -299,6 +299,14 @@ def test_log_errors_are_listed_once_with_the_name_of_the_window(tmp_path):
     assert find_log_errors(tmp_path) == ["rosrun-pick: [ERROR] [1]: lost"]
 
 
+def test_the_last_line_of_a_traceback_is_the_error(tmp_path):
+    (tmp_path / "world.log").write_text(
+        "ready\nTraceback (most recent call last):\n"
+        '  File "drive.py", line 3, in <module>\n    drive()\n\x1b[31mValueError: no such place\x1b[0m\nok\n'
+    )
+    assert find_log_errors(tmp_path) == ["world: ValueError: no such place"]
+
+
 def test_repeated_collisions_with_a_body_are_counted_but_reported_once():
     record = Record()
     record.touch("sofa::link", "sofa::link")

@@ -8,9 +8,10 @@ MAX_ERRORS = 20
 _COLOUR = re.compile(r"\x1b\[[0-9;]*m")
 _ERROR_LINE = re.compile(
     r"^\[ *(?:ERROR|FATAL)\]|\berror:|process has died|Segmentation fault|RLException|ResourceNotFound|"
-    r"Resource not found|cannot launch node|command not found|No such file|Couldn't find|Traceback",
+    r"Resource not found|cannot launch node|command not found|No such file|Couldn't find",
     re.IGNORECASE,
 )
+_TRACEBACK = "Traceback (most recent call last):"
 
 
 def find_log_errors(folder: Path) -> List[str]:
@@ -20,13 +21,19 @@ def find_log_errors(folder: Path) -> List[str]:
         folder: Folder with a ``*.log`` for each window; ``build.log`` is ignored.
 
     Returns:
-        The first MAX_ERRORS lines as ``LOG: LINE``, without duplicates and colour codes.
+        The first MAX_ERRORS lines as ``LOG: LINE``, without duplicates and colour codes; of a traceback, its
+        last line.
     """
     found: List[str] = []
     for log in sorted(set(folder.glob("*.log")) - {folder / "build.log"}):
+        is_in_traceback = False
         for line in log.read_text(errors="replace").splitlines():
-            line = _COLOUR.sub("", line).strip()
-            entry = f"{log.stem}: {line}"
-            if _ERROR_LINE.search(line) and entry not in found:
-                found.append(entry)
+            text = _COLOUR.sub("", line).rstrip()
+            if text.endswith(_TRACEBACK):
+                is_in_traceback = True
+            elif _ERROR_LINE.search(text.strip()) or is_in_traceback and text[:1].strip():
+                is_in_traceback = False
+                entry = f"{log.stem}: {text.strip()}"
+                if entry not in found:
+                    found.append(entry)
     return found[:MAX_ERRORS]
