@@ -185,3 +185,11 @@ def test_messages_that_have_arrived_are_part_of_the_trace(run, monkeypatch):
         assert run.conclude(DONE) == 0
     assert next(looks, "all were made") == "all were made"
     assert "/late" in (run.folder / "trace.txt").read_text()
+
+
+def test_an_end_that_cannot_be_awaited_is_named(run, monkeypatch):
+    monkeypatch.setattr(run_module, "PROCESSING_SECONDS", 0.05)
+    monkeypatch.setattr(run_module, "has_unprocessed", lambda: True)
+    with run:
+        assert run.conclude(DONE) == 0
+    assert "end of the trace: not processed within 0.05 s" in "".join(run.display.printed)

@@ -170,7 +170,8 @@ class Run:
         Each topic has a thread, and any of them may be behind that of the ground truth.
         """
         _wait_until(self._trace.is_settled, SETTLE_SECONDS)
-        _wait_until(lambda: not has_unprocessed(), PROCESSING_SECONDS)
+        if not _wait_until(lambda: not has_unprocessed(), PROCESSING_SECONDS):
+            self.result.missing.append(f"end of the trace: not processed within {PROCESSING_SECONDS:g} s")
 
     def _bring_up(self) -> None:
         self.display.print(f"run folder {self.folder}")
@@ -244,10 +245,12 @@ class Run:
         self.result.write()
 
 
-def _wait_until(holds: Callable[[], bool], seconds: float) -> None:
+def _wait_until(holds: Callable[[], bool], seconds: float) -> bool:
+    """Wait, and return whether it holds."""
     deadline = time.monotonic() + seconds
-    while not holds() and time.monotonic() < deadline:
+    while not (does_hold := holds()) and time.monotonic() < deadline:
         time.sleep(0.005)
+    return does_hold
 
 
 def _is_time_simulated() -> bool:
