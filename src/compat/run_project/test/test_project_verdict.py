@@ -304,7 +304,13 @@ def test_the_last_line_of_a_traceback_is_the_error(tmp_path):
         "ready\nTraceback (most recent call last):\n"
         '  File "drive.py", line 3, in <module>\n    drive()\n\x1b[31mValueError: no such place\x1b[0m\nok\n'
     )
-    assert find_log_errors(tmp_path) == ["world: ValueError: no such place"]
+    (tmp_path / "marker.log").write_text("[ERROR] [1]: Traceback (most recent call last):\n  File")
+    traceback = "Traceback (most recent call last):"
+    assert find_log_errors(tmp_path) == [
+        f"marker: [ERROR] [1]: {traceback}",
+        f"marker: {traceback}",
+        "world: ValueError: no such place",
+    ]
 
 
 def test_repeated_collisions_with_a_body_are_counted_but_reported_once():

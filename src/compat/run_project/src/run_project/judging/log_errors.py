@@ -2,7 +2,7 @@
 
 import re
 from pathlib import Path
-from typing import List
+from typing import Iterable, Iterator, List
 
 MAX_ERRORS = 20
 _COLOUR = re.compile(r"\x1b\[[0-9;]*m")
@@ -26,14 +26,21 @@ def find_log_errors(folder: Path) -> List[str]:
     """
     found: List[str] = []
     for log in sorted(set(folder.glob("*.log")) - {folder / "build.log"}):
-        is_in_traceback = False
-        for line in log.read_text(errors="replace").splitlines():
-            text = _COLOUR.sub("", line).rstrip()
-            if text.endswith(_TRACEBACK):
-                is_in_traceback = True
-            elif _ERROR_LINE.search(text.strip()) or is_in_traceback and text[:1].strip():
-                is_in_traceback = False
-                entry = f"{log.stem}: {text.strip()}"
-                if entry not in found:
-                    found.append(entry)
+        for line in _errors_in(log.read_text(errors="replace").splitlines()):
+            entry = f"{log.stem}: {line}"
+            if entry not in found:
+                found.append(entry)
     return found[:MAX_ERRORS]
+
+
+def _errors_in(lines: Iterable[str]) -> Iterator[str]:
+    """Yield error lines, and the first line after each traceback that is not indented."""
+    is_in_traceback = False
+    for line in lines:
+        text = _COLOUR.sub("", line).rstrip()
+        is_end = is_in_traceback and bool(text[:1].strip())
+        if is_end or _ERROR_LINE.search(text.strip()):
+            yield text.strip()
+        is_in_traceback = text.endswith(_TRACEBACK) or (is_in_traceback and not is_end)
+    if is_in_traceback:
+        yield _TRACEBACK
