@@ -171,8 +171,13 @@ def test_a_message_is_unprocessed_until_its_callback_returns(publish, subscribe,
     wait_until(lambda: not connections.has_unprocessed())
     publisher.publish("one")
     wait_until(connections.has_unprocessed)
-    while not begun.is_set():
-        assert connections.has_unprocessed(), "it is in the socket, or read"
+
+    def has_begun():
+        is_begun = begun.is_set()
+        assert is_begun or connections.has_unprocessed(), "it is in the socket, or read"
+        return is_begun
+
+    wait_until(has_begun)
     assert connections.has_unprocessed(), "its callback has not returned"
     may_end.set()
     wait_until(lambda: not connections.has_unprocessed())
