@@ -9,7 +9,7 @@ import time
 
 import pytest
 
-from run_project.script_sleeps import STANDSTILL_SECONDS, ScriptSleeps, ScriptTime
+from run_project.script_sleeps import STANDSTILL_SECONDS, STARTING_SECONDS, ScriptSleeps, ScriptTime
 from run_project.stand_ins import STAND_INS
 from run_project.stand_ins.sleep import SOCKET_VARIABLE, seconds_of
 
@@ -19,9 +19,22 @@ LIMIT_SECONDS = 60.0
 def test_wall_time_passes_until_a_simulation_runs_and_simulated_time_from_then_on():
     elapsed = ScriptTime(100.0, 0.0)
     assert elapsed.update(102.0, 0.0) == pytest.approx(2.0)
-    assert elapsed.update(102.1, 0.5) == pytest.approx(2.5)
-    assert elapsed.update(102.2, 0.5) == pytest.approx(2.5)
-    assert elapsed.update(102.3, 2.5) == pytest.approx(4.5)
+    assert elapsed.update(102.1, 0.5) == pytest.approx(0.5)
+    assert elapsed.update(102.2, 0.5) == pytest.approx(0.5)
+    assert elapsed.update(102.3, 2.5) == pytest.approx(2.5)
+
+
+def test_no_time_passes_for_a_script_while_programs_start_but_not_for_ever():
+    elapsed = ScriptTime(100.0, 0.0)
+    assert elapsed.update(104.0, 0.0, is_starting=True) == 0.0
+    assert elapsed.update(105.0, 0.0) == pytest.approx(1.0)
+    assert elapsed.update(105.0 + STARTING_SECONDS, 0.0, is_starting=True) == pytest.approx(1.0)
+    assert elapsed.update(107.0 + STARTING_SECONDS, 0.0, is_starting=True) == pytest.approx(3.0)
+
+
+def test_simulated_time_passes_while_programs_start():
+    elapsed = ScriptTime(100.0, 5.0)
+    assert elapsed.update(101.0, 7.0, is_starting=True) == pytest.approx(2.0)
 
 
 def test_a_simulation_that_stands_still_does_not_stop_a_script():
@@ -81,16 +94,17 @@ def test_a_script_continues_when_the_simulated_time_has_passed():
     assert ends[1] - ends[0] >= 500.0
 
 
-@pytest.mark.parametrize("is_awaited", [False, True])
-def test_before_a_simulator_runs_a_sleep_ends_when_all_programs_have_come_up(is_awaited):
-    """Afterwards the next window must not open before that time begins, on some machines only."""
+@pytest.mark.parametrize(("is_starting", "is_time_due"), [(False, False), (True, False), (False, True)])
+def test_while_no_time_can_begin_a_sleep_ends_when_all_programs_have_come_up(is_starting, is_time_due):
+    """Where it can, the next window must not open before that time begins, on some machines only."""
+    is_awaited = is_starting or is_time_due
     clock = [0.0]
     with ScriptSleeps(lambda: clock[0], lambda: None) as sleeps:
         sleeper = threading.Thread(target=sleeps.sleep, args=(1000.0,))
         sleeper.start()
         deadline = time.monotonic() + (1.0 if is_awaited else LIMIT_SECONDS)
         while sleeper.is_alive() and time.monotonic() < deadline:
-            sleeps.update(is_awaited)
+            sleeps.update(is_starting, is_time_due)
             time.sleep(0.01)
         assert sleeper.is_alive() == is_awaited
         clock[0] = 1001.0

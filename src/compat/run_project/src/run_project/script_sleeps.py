@@ -19,11 +19,16 @@ STANDSTILL_SECONDS = 1.0
 # Reports in succession without a program that starts, from which on all that were started have come up: the
 # first may be older than the sleep.
 QUIET_REPORTS = 2
+# Wall time for which programs that start can stop the time of one sleep [s].
+STARTING_SECONDS = 30.0
 MAX_REQUEST_BYTES = 64
 
 
 class ScriptTime:
     """Time that passes for a script: simulated while a simulation runs, else wall time.
+
+    What has passed before simulated time begins does not count afterwards, and none passes while programs
+    start: both depend on the machine.
 
     Args:
         wall: Wall time at the start [s].
@@ -33,15 +38,25 @@ class ScriptTime:
     def __init__(self, wall: float, simulated: float):
         self._wall, self._simulated = wall, simulated
         self._latest_step = -math.inf
-        self._elapsed = 0.0
+        self._has_begun = simulated > 0.0
+        self._starting = self._elapsed = 0.0
 
-    def update(self, wall: float, simulated: float) -> float:
-        """Return the time since the start [s], at a wall time and a simulated time [s]."""
+    def update(self, wall: float, simulated: float, is_starting: bool = False) -> float:
+        """Return the time since the start [s].
+
+        Args:
+            wall: Wall time [s].
+            simulated: Simulated time [s]; 0 before it begins.
+            is_starting: Whether programs start.
+        """
+        passed = wall - self._wall
         if simulated > self._simulated:
-            self._elapsed += simulated - self._simulated
-            self._latest_step = wall
+            self._elapsed = self._elapsed + simulated - self._simulated if self._has_begun else simulated
+            self._has_begun, self._latest_step = True, wall
+        elif is_starting and not self._has_begun and self._starting < STARTING_SECONDS:
+            self._starting += passed
         elif wall - self._latest_step > STANDSTILL_SECONDS:
-            self._elapsed += wall - self._wall
+            self._elapsed += passed
         self._wall, self._simulated = wall, simulated
         return self._elapsed
 
@@ -49,8 +64,8 @@ class ScriptTime:
 class ScriptSleeps:
     """Serves the stand-in for ``sleep``: context in which scripts sleep by simulated time.
 
-    Before a simulator is started they sleep until the programs started so far have come up, and not longer
-    than they want. From then on, and until its time begins, they sleep by wall time.
+    While no simulated time can begin, as no simulator has been started or it waits for nodes that have not,
+    they sleep until the programs started so far have come up, and not longer than they want.
 
     Args:
         simulated_time: Returns the simulated time [s].
@@ -64,6 +79,7 @@ class ScriptSleeps:
         self._simulated_time, self._on_end = simulated_time, on_end
         self._is_over = threading.Event()
         self._quiet_reports = 0
+        self._is_starting = False
         self._server: Optional[socketserver.ThreadingUnixStreamServer] = None
         self.address = f"run_project_{os.getpid()}_{secrets.token_hex(8)}"
 
@@ -86,15 +102,16 @@ class ScriptSleeps:
             self._server.shutdown()
             self._server.server_close()
 
-    def update(self, is_awaited: bool) -> None:
-        """Report whether programs are starting, or a simulator runs, whose time begins soon."""
-        self._quiet_reports = 0 if is_awaited else self._quiet_reports + 1
+    def update(self, is_starting: bool, is_time_due: bool) -> None:
+        """Report whether programs are starting, and whether a simulator runs whose time begins soon."""
+        self._is_starting = is_starting
+        self._quiet_reports = 0 if is_starting or is_time_due else self._quiet_reports + 1
 
     def sleep(self, seconds: float) -> None:
         """Wait for a time [s], or until the context is left."""
         self._quiet_reports = 0
         elapsed = ScriptTime(time.monotonic(), self._simulated_time())
-        while elapsed.update(time.monotonic(), self._simulated_time()) < seconds:
+        while elapsed.update(time.monotonic(), self._simulated_time(), self._is_starting) < seconds:
             if self._simulated_time() == 0.0 and self._quiet_reports >= QUIET_REPORTS:
                 break
             if self._is_over.wait(POLL_SECONDS):
