@@ -7,7 +7,7 @@ from typing import List, Optional
 
 import rospy
 
-from rospy_transport.node import end_registration_at_shutdown
+from planar_ros.node.runner import init_node, shut_down_on_signals
 from run_project.stand_ins import without_stand_ins
 from run_project.stand_ins.rviz_topics import displayed_topics
 
@@ -19,8 +19,8 @@ def main() -> None:
     """Run the node ``rviz``; executes the real rviz instead if the run has ``--rviz``."""
     if os.environ.get(RVIZ_VARIABLE):
         os.execvpe("rviz", ["rviz", *sys.argv[1:]], without_stand_ins(os.environ))
-    rospy.init_node("rviz", anonymous=True)
-    end_registration_at_shutdown()
+    shut_down_on_signals()  # roslaunch and the run both send one
+    init_node("rviz", anonymous=True)
     config = config_file(rospy.myargv()[1:])
     text = ""
     if config is not None:
