@@ -16,7 +16,12 @@ from planar import PlanarError
 from run_project.checkout.dry_run import recorded_calls
 from run_project.checkout.entry import choose_script, is_home_service_script
 from run_project.checkout.layout import Checkout, ProjectError, read_checkout
-from run_project.checkout.needs import missing_packages, navigation_nodes, unset_variables
+from run_project.checkout.needs import (
+    files_left_to_environment,
+    missing_packages,
+    navigation_nodes,
+    unset_variables,
+)
 from run_project.checkout.placement import READ_SUFFIXES, Placement, best_placement
 from run_project.checkout.vendored import is_vendored
 from run_project.course.launch_plan import CourseProject, ProjectLaunchPlan, find_launch_plan
@@ -140,13 +145,18 @@ def _warn_about_missing_files(checkout: Checkout, display: Display) -> None:
 def _lacking(checkout: Checkout, script: str, text: str) -> List[str]:
     """What a script needs and does not find, in sentences."""
     packages = missing_packages(text, lambda name: name in checkout.packages or is_installed(name))
-    variables = unset_variables(text, {*os.environ, *DEFAULT_VARIABLES})
+    environment = {*os.environ, *DEFAULT_VARIABLES}
+    variables = unset_variables(text, environment)
     return [
         *(
             f"{script} starts a part of {name}, which is neither in the checkout nor here"
             for name in packages
         ),
         *(f"{script} uses ${name}, which is not set: set it as its author has it" for name in variables),
+        *(
+            f"{script}: {sentence}"
+            for sentence in files_left_to_environment(text, checkout.files, environment)
+        ),
     ]
 
 

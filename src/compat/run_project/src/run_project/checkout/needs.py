@@ -1,7 +1,8 @@
 """What a project needs, found before the build: packages, environment variables, nodes of navigation."""
 
 import re
-from typing import Callable, Container, Iterable, List, Set
+from pathlib import PurePath
+from typing import Callable, Collection, Container, Iterable, List, NamedTuple, Set
 
 _STARTED = re.compile(r"\b(?:roslaunch|rosrun|roscd)\s+(?:-{1,2}[\w-]+\s+)*([a-zA-Z]\w*)(?=[\s\"']|$)")
 _COMMENT = re.compile(r"(?:^|(?<=\s))#.*", re.MULTILINE)
@@ -21,6 +22,28 @@ _ATTRIBUTE = re.compile(r"\b(pkg|name)\s*=\s*[\"']([^\"']*)")
 # Packages whose nodes advance in lock-step, and what starts both in launch files of public packages.
 _NAVIGATION = ("amcl", "move_base")
 _STARTS_NAVIGATION = re.compile(r"turtlebot3?_navigation|\bamcl_demo")
+
+
+class DefaultFile(NamedTuple):
+    """A file that a launch file of turtlebot_gazebo takes from its environment.
+
+    Attributes:
+        launch_file: Name of the launch file.
+        argument: Its argument.
+        variable: Variable that is the argument's default.
+        suffixes: Those of the files that together are one: the last is that of the file to name.
+    """
+
+    launch_file: str
+    argument: str
+    variable: str
+    suffixes: Collection[str]
+
+
+_DEFAULT_FILES = (
+    DefaultFile("turtlebot_world.launch", "world_file", "TURTLEBOT_GAZEBO_WORLD_FILE", (".world",)),
+    DefaultFile("amcl_demo.launch", "map_file", "TURTLEBOT_GAZEBO_MAP_FILE", (".pgm", ".yaml")),
+)
 
 
 def missing_packages(script: str, is_there: Callable[[str], bool]) -> List[str]:
@@ -46,6 +69,39 @@ def unset_variables(script: str, environment: Container[str]) -> List[str]:
     assigned.update(*(_WORD.findall(words) for words in _READ.findall(text)))
     used = {first or second for first, second in _USED.findall(_SINGLE_QUOTED.sub("", text))}
     return sorted(name for name in used - assigned if name not in environment)
+
+
+def files_left_to_environment(script: str, files: Collection[str], environment: Container[str]) -> List[str]:
+    """What the author's environment may have named: worlds and maps instead of which the defaults are used.
+
+    Args:
+        script: Text of the script.
+        files: Files of the checkout.
+        environment: Names of the variables that are set where it starts.
+
+    Returns:
+        Sentences, with the variable to set.
+    """
+    text = _COMMENT.sub("", script)
+    names = {PurePath(file).name for file in files}
+    found = []
+    for each in _DEFAULT_FILES:
+        starts = re.findall(rf"turtlebot_gazebo\s+{re.escape(each.launch_file)}\b([^;&|\n]*)", text)
+        is_named = each.variable in environment or each.variable in _ASSIGNED.findall(text)
+        if is_named or each.launch_file in names or not any(f"{each.argument}:=" not in s for s in starts):
+            continue
+        *others, suffix = each.suffixes
+        own = [
+            file
+            for file in map(PurePath, files)
+            if file.suffix == suffix and all(file.with_suffix(other).name in names for other in others)
+        ]
+        if own:
+            found.append(
+                f"{each.launch_file} is started without {each.argument}, so with the default, but the "
+                f"checkout has {', '.join(map(str, own))}: if that is meant, set {each.variable} to its path"
+            )
+    return found
 
 
 def navigation_nodes(texts: Iterable[str]) -> List[str]:
