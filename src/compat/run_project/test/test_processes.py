@@ -17,7 +17,7 @@ from run_project.ros.processes import (
     BusyProcesses,
     ListedProcess,
     WallSleeps,
-    is_simulator,
+    is_time_due,
     starting_seconds,
 )
 from run_project.stand_ins import STAND_INS
@@ -147,4 +147,9 @@ def test_nodes_are_asked_for_their_process_until_they_answer():
     ],
 )
 def test_simulators_are_known_by_their_program(command, expected):
-    assert is_simulator(command) == expected
+    assert is_time_due([["bash"], command], "", frozenset()) == expected
+
+
+@pytest.mark.parametrize(("present", "expected"), [({"amcl", "x"}, False), ({"amcl", "planner"}, True)])
+def test_time_is_not_due_while_the_simulator_waits_for_nodes_that_are_not_there(present, expected):
+    assert is_time_due([["gzserver"]], "amcl robot/planner", present) == expected

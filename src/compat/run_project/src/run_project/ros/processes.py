@@ -4,7 +4,7 @@ import contextlib
 import subprocess
 import time
 from pathlib import Path
-from typing import Dict, List, NamedTuple, Sequence, Tuple
+from typing import AbstractSet, Dict, Iterable, List, NamedTuple, Sequence, Tuple
 
 import psutil
 
@@ -107,9 +107,16 @@ def program_of(command: List[str]) -> str:
     return command[1] if name.startswith("python") and len(command) > 1 else "".join(command[:1])
 
 
-def is_simulator(command: List[str]) -> bool:
-    """Whether a command line is that of a simulator."""
-    return not SIMULATORS.isdisjoint(Path(word).name for word in command[:2])
+def is_time_due(commands: Iterable[List[str]], awaited: str, present: AbstractSet[str]) -> bool:
+    """Whether a simulator runs, and all nodes are in the graph that its time waits for.
+
+    Args:
+        commands: Command lines of the processes.
+        awaited: Names of the nodes, separated by spaces.
+        present: Names of the nodes in the graph, without namespace.
+    """
+    is_running = any(not SIMULATORS.isdisjoint(Path(word).name for word in each[:2]) for each in commands)
+    return is_running and present >= {name.rpartition("/")[2] for name in awaited.split()}
 
 
 def starting_seconds(each: ListedProcess, has_children: bool, is_node: bool) -> float:

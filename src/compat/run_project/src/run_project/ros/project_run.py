@@ -22,7 +22,7 @@ from run_project.ros.processes import (
     BusyProcesses,
     ListedProcess,
     WallSleeps,
-    is_simulator,
+    is_time_due,
     list_processes,
     program_of,
     starting_seconds,
@@ -177,7 +177,8 @@ class ProjectRun:
             listed, processes = self._list_processes(now)
             is_starting = self._is_something_starting(listed)
             self._limit.update(now, is_starting, bool(windows))
-            self._sleeps.update(is_starting, self._is_time_due(listed))
+            commands, awaited = [each.command for each in listed], str(self._parameters["/gazebo/wait_for"])
+            self._sleeps.update(is_starting, is_time_due(commands, awaited, observer.nodes.names))
             self._display.show(observer.status())
             if observer.simulated_time != moved_time:
                 moved_wall, moved_time = now, observer.simulated_time
@@ -281,11 +282,6 @@ class ProjectRun:
             or each.age < starting_seconds(each, each.process.pid in parents, self._is_node(each))
             for each in listed
         )
-
-    def _is_time_due(self, listed: Sequence[ListedProcess]) -> bool:
-        """Whether a simulator runs, and all nodes are in the graph that its time waits for."""
-        awaited = {name.rpartition("/")[2] for name in str(self._parameters["/gazebo/wait_for"]).split()}
-        return self.observer.nodes.names >= awaited and any(is_simulator(each.command) for each in listed)
 
     def _is_node(self, each: ListedProcess) -> bool:
         """Whether a process is in the graph: by its number, or by its name if it was forked elsewhere."""
