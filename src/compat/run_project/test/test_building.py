@@ -16,6 +16,7 @@ from run_project.preparation.building import (
     copy_checkout,
     environment,
 )
+from run_project.stand_ins import PACKAGE_FOLDER
 
 OUTPUT = """
 CMake Error at /usr/share/cmake-3.25/Modules/FindPackageHandleStandardArgs.cmake:230 (message):
@@ -133,6 +134,20 @@ def test_turtlebot3_model_has_a_default(tmp_path, monkeypatch):
     assert environment(workspace)["TURTLEBOT3_MODEL"] == "burger"
     monkeypatch.setenv("TURTLEBOT3_MODEL", "waffle")
     assert environment(workspace)["TURTLEBOT3_MODEL"] == "waffle"
+
+
+def test_files_that_the_user_names_are_kept_but_not_defaults_of_this_workspace(tmp_path, monkeypatch):
+    workspace = Workspace(tmp_path, tmp_path, {}, tmp_path)
+    (tmp_path / "devel").mkdir()
+    (tmp_path / "devel/setup.bash").write_text(
+        ": ${TURTLEBOT_GAZEBO_MAP_FILE:=/theirs.yaml}; export TURTLEBOT_GAZEBO_MAP_FILE"
+    )
+    monkeypatch.setenv("TURTLEBOT_GAZEBO_WORLD_FILE", "/home/me/u.world")
+    monkeypatch.setenv(
+        "TURTLEBOT_GAZEBO_MAP_FILE", str(PACKAGE_FOLDER.parent / "turtlebot_gazebo/maps/playground.yaml")
+    )
+    assert environment(workspace)["TURTLEBOT_GAZEBO_WORLD_FILE"] == "/home/me/u.world"
+    assert environment(workspace)["TURTLEBOT_GAZEBO_MAP_FILE"] == "/theirs.yaml"
 
 
 def test_model_folders_are_appended_to_the_gazebo_model_path_of_the_project(tmp_path):

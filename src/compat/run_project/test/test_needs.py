@@ -6,6 +6,7 @@ from run_project.checkout.needs import (
     navigation_nodes,
     unset_variables,
 )
+from run_project.stand_ins import PACKAGE_FOLDER
 
 SCRIPT = """#!/bin/bash
 # roslaunch old_package x.launch, with $OLD
@@ -50,11 +51,13 @@ WORLD, MAP = (
     "roslaunch turtlebot_gazebo turtlebot_world.launch",
     "roslaunch turtlebot_gazebo amcl_demo.launch",
 )
-FILES = ("maps/u.yaml", "maps/u.pgm", "maps/tuning.yaml", "maps/u.world")
+OWN = {"world_file": ["maps/u.world"], "map_file": ["maps/u.yaml"]}
+NONE_OWN = {"world_file": [], "map_file": []}
+VENDORED = ["turtlebot_gazebo/launch/turtlebot_world.launch"]
 
 
 def test_worlds_and_maps_that_the_environment_may_have_named_are_found():
-    world, map_file = files_left_to_environment(f'xterm -e "{WORLD}" &\n{MAP}', FILES, ())
+    world, map_file = files_left_to_environment(f'xterm -e "{WORLD}" &\n{MAP}', OWN, (), {})
     assert "maps/u.world" in world
     assert "set TURTLEBOT_GAZEBO_WORLD_FILE" in world
     assert "maps/u.yaml:" in map_file
@@ -62,19 +65,27 @@ def test_worlds_and_maps_that_the_environment_may_have_named_are_found():
 
 
 @pytest.mark.parametrize(
-    ("script", "files"),
+    ("script", "own", "launch_files"),
     [
-        (f"# {WORLD}", FILES),
-        (f"{WORLD} world_file:=$(pwd)/u.world; {MAP} gui:=true map_file:=u.yaml", FILES),
-        (f"export TURTLEBOT_GAZEBO_WORLD_FILE=u.world; {WORLD}", FILES),
-        (WORLD, (*FILES, "turtlebot_gazebo/launch/turtlebot_world.launch")),
-        (f"{WORLD}; {MAP}", ("maps/tuning.yaml",)),
-        ("roslaunch my_gazebo turtlebot_world.launch", FILES),
+        (f"# {WORLD}", OWN, ()),
+        (f"{WORLD} world_file:=$(pwd)/u.world; {MAP} gui:=true map_file:=u.yaml", OWN, ()),
+        (f"export TURTLEBOT_GAZEBO_WORLD_FILE=u.world; {WORLD}", OWN, ()),
+        (WORLD, OWN, VENDORED),
+        (f"{WORLD}; {MAP}", NONE_OWN, ()),
+        ("roslaunch my_gazebo turtlebot_world.launch", OWN, ()),
     ],
 )
-def test_a_script_that_names_its_files_or_has_none_is_not_asked_for_them(script, files):
-    assert files_left_to_environment(script, files, ()) == []
+def test_a_script_that_names_its_files_or_has_none_is_not_asked_for_them(script, own, launch_files):
+    assert files_left_to_environment(script, own, launch_files, {}) == []
 
 
 def test_the_environment_names_them():
-    assert files_left_to_environment(WORLD, FILES, ("TURTLEBOT_GAZEBO_WORLD_FILE",)) == []
+    environment = {"TURTLEBOT_GAZEBO_WORLD_FILE": "/home/me/u.world"}
+    assert files_left_to_environment(WORLD, OWN, (), environment) == []
+
+
+def test_the_default_of_this_workspace_is_not_the_authors():
+    default = PACKAGE_FOLDER.parent / "turtlebot_gazebo/worlds/playground.world"
+    assert default.is_file()
+    environment = {"TURTLEBOT_GAZEBO_WORLD_FILE": str(default)}
+    assert len(files_left_to_environment(WORLD, OWN, (), environment)) == 1

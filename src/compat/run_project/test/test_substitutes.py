@@ -50,6 +50,18 @@ def test_a_repository_that_only_the_script_references_is_substituted(tmp_path):
     assert (copy / DEMO).is_file()
 
 
+def test_worlds_and_maps_of_substitutes_are_not_the_projects_own(tmp_path):
+    root = project(tmp_path / "repo", script="")
+    (root / "turtlebot_gazebo").mkdir()
+    (root / "maze.world").write_text("")
+    (root / "maze.yaml").write_text("image: maze.pgm\nresolution: 0.05\n")
+    read = read_checkout(root)
+    assert "turtlebot_gazebo/launch/turtlebot_world.launch" in read.files
+    assert "turtlebot_gazebo/launch/turtlebot_world.launch" not in read.own_files()
+    assert read.worlds() == ["maze.world"]
+    assert read.maps() == {"maze.yaml": "maze.pgm"}
+
+
 def test_packages_of_the_project_are_kept(tmp_path):
     root = project(tmp_path / "repo")
     (root / DEMO).parent.mkdir(parents=True)

@@ -145,18 +145,16 @@ def _warn_about_missing_files(checkout: Checkout, display: Display) -> None:
 def _lacking(checkout: Checkout, script: str, text: str) -> List[str]:
     """What a script needs and does not find, in sentences."""
     packages = missing_packages(text, lambda name: name in checkout.packages or is_installed(name))
-    environment = {*os.environ, *DEFAULT_VARIABLES}
-    variables = unset_variables(text, environment)
+    variables = unset_variables(text, {*os.environ, *DEFAULT_VARIABLES})
+    own = {"world_file": checkout.worlds(), "map_file": list(checkout.maps())}
+    defaults = files_left_to_environment(text, own, checkout.own_files(), os.environ)
     return [
         *(
             f"{script} starts a part of {name}, which is neither in the checkout nor here"
             for name in packages
         ),
         *(f"{script} uses ${name}, which is not set: set it as its author has it" for name in variables),
-        *(
-            f"{script}: {sentence}"
-            for sentence in files_left_to_environment(text, checkout.files, environment)
-        ),
+        *(f"{script}: {sentence}" for sentence in defaults),
     ]
 
 

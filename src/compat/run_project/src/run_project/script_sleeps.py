@@ -65,7 +65,8 @@ class ScriptSleeps:
     """Serves the stand-in for ``sleep``: context in which scripts sleep by simulated time.
 
     While no simulated time can begin, as no simulator has been started or it waits for nodes that have not,
-    they sleep until the programs started so far have come up, and not longer than they want.
+    they sleep until the programs started so far have come up, and not longer than they want by wall time in
+    which none starts.
 
     Args:
         simulated_time: Returns the simulated time [s].

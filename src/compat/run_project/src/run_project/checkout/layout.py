@@ -74,19 +74,30 @@ class Checkout:
         """Files that Git LFS has not fetched: the checkout contains only their pointers."""
         return [file for file in self.files if _starts_with(self.root / file, LFS_POINTER)]
 
+    def own_files(self) -> List[str]:
+        """All files but those of substitutes."""
+        return [file for file in self.files if self.substitutes.keys().isdisjoint(Path(file).parents)]
+
+    def worlds(self) -> List[str]:
+        """All worlds of the project's own."""
+        return [file for file in self.own_files() if file.endswith(".world")]
+
+    def maps(self) -> Dict[str, str]:
+        """Images of all maps of the project's own, by map file."""
+        found = {}
+        for file in self.own_files():
+            path = self.root / file
+            if path.suffix in (".yaml", ".yml") and path.is_file():
+                text = path.read_text(errors="replace")
+                image = _MAP_IMAGE.search(text)
+                if image and _MAP_RESOLUTION.search(text):
+                    found[file] = image.group(1)
+        return found
+
     def maps_without_image(self) -> List[str]:
         """Map files whose image is not in the checkout, with its name: map_server refuses them."""
         names = {Path(file).name for file in self.files}
-        found = []
-        for file in self.files:
-            path = self.root / file
-            if path.suffix not in (".yaml", ".yml") or not path.is_file():
-                continue
-            text = path.read_text(errors="replace")
-            image = _MAP_IMAGE.search(text)
-            if image and _MAP_RESOLUTION.search(text) and Path(image.group(1)).name not in names:
-                found.append(f"{file} ({image.group(1)})")
-        return found
+        return [f"{file} ({image})" for file, image in self.maps().items() if Path(image).name not in names]
 
     def model_folders(self) -> List[Path]:
         """Folders that contain Gazebo models, as referenced by ``model://NAME`` in worlds."""

@@ -2,7 +2,9 @@
 
 import re
 from pathlib import PurePath
-from typing import Callable, Collection, Container, Iterable, List, NamedTuple, Set
+from typing import Callable, Container, Iterable, List, Mapping, NamedTuple, Sequence, Set
+
+from run_project.stand_ins import is_of_workspace
 
 _STARTED = re.compile(r"\b(?:roslaunch|rosrun|roscd)\s+(?:-{1,2}[\w-]+\s+)*([a-zA-Z]\w*)(?=[\s\"']|$)")
 _COMMENT = re.compile(r"(?:^|(?<=\s))#.*", re.MULTILINE)
@@ -31,18 +33,16 @@ class DefaultFile(NamedTuple):
         launch_file: Name of the launch file.
         argument: Its argument.
         variable: Variable that is the argument's default.
-        suffixes: Those of the files that together are one: the last is that of the file to name.
     """
 
     launch_file: str
     argument: str
     variable: str
-    suffixes: Collection[str]
 
 
 _DEFAULT_FILES = (
-    DefaultFile("turtlebot_world.launch", "world_file", "TURTLEBOT_GAZEBO_WORLD_FILE", (".world",)),
-    DefaultFile("amcl_demo.launch", "map_file", "TURTLEBOT_GAZEBO_MAP_FILE", (".pgm", ".yaml")),
+    DefaultFile("turtlebot_world.launch", "world_file", "TURTLEBOT_GAZEBO_WORLD_FILE"),
+    DefaultFile("amcl_demo.launch", "map_file", "TURTLEBOT_GAZEBO_MAP_FILE"),
 )
 
 
@@ -71,35 +71,35 @@ def unset_variables(script: str, environment: Container[str]) -> List[str]:
     return sorted(name for name in used - assigned if name not in environment)
 
 
-def files_left_to_environment(script: str, files: Collection[str], environment: Container[str]) -> List[str]:
+def files_left_to_environment(
+    script: str,
+    own: Mapping[str, Sequence[str]],
+    launch_files: Iterable[str],
+    environment: Mapping[str, str],
+) -> List[str]:
     """What the author's environment may have named: worlds and maps instead of which the defaults are used.
 
     Args:
         script: Text of the script.
-        files: Files of the checkout.
-        environment: Names of the variables that are set where it starts.
+        own: Worlds and maps of the project, by the arguments ``world_file`` and ``map_file``.
+        launch_files: Launch files of the project: its copies may have other defaults.
+        environment: Variables where it starts; this workspace sets them to files of its package.
 
     Returns:
         Sentences, with the variable to set.
     """
     text = _COMMENT.sub("", script)
-    names = {PurePath(file).name for file in files}
+    with_own_default = {PurePath(file).name for file in launch_files}
     found = []
-    for each in _DEFAULT_FILES:
-        starts = re.findall(rf"turtlebot_gazebo\s+{re.escape(each.launch_file)}\b([^;&|\n]*)", text)
-        is_named = each.variable in environment or each.variable in _ASSIGNED.findall(text)
-        if is_named or each.launch_file in names or not any(f"{each.argument}:=" not in s for s in starts):
-            continue
-        *others, suffix = each.suffixes
-        own = [
-            file
-            for file in map(PurePath, files)
-            if file.suffix == suffix and all(file.with_suffix(other).name in names for other in others)
-        ]
-        if own:
+    for launch_file, argument, variable in _DEFAULT_FILES:
+        starts = re.findall(rf"turtlebot_gazebo\s+{re.escape(launch_file)}\b([^;&|\n]*)", text)
+        is_left_out = any(f"{argument}:=" not in arguments for arguments in starts)
+        is_from_user = variable in environment and not is_of_workspace(environment[variable])
+        is_set = is_from_user or variable in _ASSIGNED.findall(text)
+        if own[argument] and is_left_out and not is_set and launch_file not in with_own_default:
             found.append(
-                f"{each.launch_file} is started without {each.argument}, so with the default, but the "
-                f"checkout has {', '.join(map(str, own))}: if that is meant, set {each.variable} to its path"
+                f"{launch_file} is started without {argument}, so with the default, but the checkout "
+                f"has {', '.join(own[argument])}: if that is meant, set {variable} to its path"
             )
     return found
 

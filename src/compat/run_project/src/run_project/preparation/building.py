@@ -16,7 +16,7 @@ from run_project.checkout.substitutes import complete_package, link_substitutes
 from run_project.preparation.build_stamp import BuildStamp
 from run_project.preparation.python2 import to_python3
 from run_project.preparation.selection import select_packages
-from run_project.stand_ins import PACKAGE_FOLDER, STAND_INS
+from run_project.stand_ins import PACKAGE_FOLDER, STAND_INS, is_of_workspace
 
 FRESH_CLONE = PACKAGE_FOLDER / "cmake" / "fresh_clone.cmake"
 # Limit of repeated configurations; each excludes the packages that fail to configure.
@@ -161,7 +161,7 @@ def build(workspace: Workspace, log: Path, report: Callable[[str], None]) -> Non
 def environment(workspace: Workspace) -> Dict[str, str]:
     """Environment after sourcing the workspace, with the model folders and default variables added."""
     script = 'source "$1/devel/setup.bash" >&2; exec env -0'
-    kept = {name: value for name, value in os.environ.items() if not name.startswith("TURTLEBOT_")}
+    kept = {name: value for name, value in os.environ.items() if not _may_be_default(name, value)}
     output = subprocess.run(
         ["bash", "-c", script, "bash", str(workspace.folder)], env=kept, stdout=subprocess.PIPE, check=True
     ).stdout
@@ -169,6 +169,12 @@ def environment(workspace: Workspace) -> Dict[str, str]:
     variables = {name: value for name, _, value in pairs}
     model_path = [variables.get(MODEL_PATH, ""), *map(str, workspace.model_folders)]
     return {**DEFAULT_VARIABLES, **variables, MODEL_PATH: ":".join(filter(None, model_path))}
+
+
+def _may_be_default(name: str, value: str) -> bool:
+    """Whether this workspace may have set a variable, to a default that must not hide the project's."""
+    is_file = name.endswith("_FILE") and not is_of_workspace(value)
+    return name.startswith("TURTLEBOT_") and not is_file
 
 
 def is_installed(package: str) -> bool:

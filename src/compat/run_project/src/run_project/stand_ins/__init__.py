@@ -10,6 +10,11 @@ PACKAGE_FOLDER = Path(__file__).resolve().parents[3]
 STAND_INS = PACKAGE_FOLDER / "stand_ins"
 
 
+def is_of_workspace(file: str) -> bool:
+    """Whether an absolute path is that of a file of this workspace's packages for projects."""
+    return file.startswith(f"{PACKAGE_FOLDER.parent}/")
+
+
 def without_stand_ins(environment: Mapping[str, str]) -> Dict[str, str]:
     """Environment for a real program, without the folders of the stand-ins.
 
