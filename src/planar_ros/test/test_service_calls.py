@@ -15,6 +15,7 @@ def server():
     seen = SimpleNamespace(waited=[], noted=[], members=MEMBERS)
     monitor = CallMonitor(lambda: seen.members, seen.noted.append, harmless=("/sim_bridge/set_parameters",))
     before_call = delaying_calls(seen.waited.append, monitor)
+    seen.monitor = monitor
     seen.call = lambda service, node, **header: before_call(service, {"callerid": node, **header})
     return seen
 
@@ -39,6 +40,13 @@ def test_a_call_of_a_synchronised_node_waits_and_is_not_noted(server):
     assert caller() == ""
     assert server.waited == [7]
     assert server.noted == []
+
+
+def test_nodes_are_known_that_call_services_and_are_not_synchronised(server):
+    server.call("/gazebo/get_model_state", "/sorter")
+    server.call("/gazebo/get_model_state", "/pick_objects")
+    server.call("/sim_bridge/set_parameters", "/rqt")
+    assert server.monitor.callers == {"/sorter"}
 
 
 def test_a_call_before_nodes_are_synchronised_is_not_noted(server):

@@ -83,14 +83,10 @@ def test_a_lost_connection_is_found_in_an_unchanged_graph(search, monkeypatch):
     assert search.unconnected == ("/scan from /sim to /amcl",)
 
 
-def test_receivers_are_other_nodes_that_are_not_observers(search):
-    assert search.nodes["/amcl"].receivers == {"/move_base"}
-    assert search.nodes["/move_base"].receivers == set()
-
-
-def test_a_node_takes_part_if_another_one_or_the_simulator_receives_its_messages(search):
-    assert search.nodes["/move_base"].takes_part
-    assert not search.nodes["/viewer"].takes_part
+def test_receivers_are_other_nodes_and_the_simulator_but_no_observers(search):
+    assert search.nodes["/amcl"].receivers == {"/move_base", "/sim"}
+    assert search.nodes["/move_base"].receivers == {"/sim"}
+    assert search.nodes["/viewer"].receivers == set()
 
 
 def test_bystanders_are_not_searched_for(search):

@@ -9,6 +9,7 @@ import time
 import pytest
 
 from sim_bridge.rest.barrier import (
+    LOOK_SECONDS,
     MOST_NEWS,
     OTHERS_PATIENCE_SECONDS,
     RECOVERY_SECONDS,
@@ -83,6 +84,25 @@ def test_a_quiet_time_may_begin_with_the_first_rest():
     run.from_first_rest = True
     assert 0.010 + QUIET <= run.step() <= 0.010 + QUIET + 2 * LOOK
     assert QUIET <= run.step() <= QUIET + 3 * LOOK
+
+
+def test_it_ends_when_all_loops_have_looked_at_the_clock():
+    barrier, wall, looked = RestBarrier(PATIENCE), 0.0, []
+    rest = AwaitedRest({"amcl": lambda: True}, ("amcl",), 9.0, True, lambda: bool(looked))
+    while not barrier.is_passed(wall, rest, False):
+        wall += LOOK
+        if wall > 0.5:
+            looked.append(wall)
+    assert 0.5 < wall <= 0.5 + 3 * LOOK
+
+
+def test_a_message_that_arrives_then_may_have_them_work_again():
+    barrier, wall, sent = RestBarrier(PATIENCE), 0.0, []
+    rest = AwaitedRest({"amcl": lambda: True}, ("amcl",), 9.0, True, lambda: True)
+    while not barrier.is_passed(wall, rest, len(sent) < 8):
+        sent.append(wall)
+        wall += LOOK
+    assert wall >= sent[7] + LOOK_SECONDS
 
 
 def test_such_a_quiet_time_begins_again_after_a_node_was_busy_twice():
@@ -323,6 +343,31 @@ def test_threads_that_look_at_the_clock_are_learned(native_program, arguments, p
     finally:
         process.kill()
         process.wait()
+
+
+def test_a_thread_that_looks_at_the_clock_has_when_it_has_run_since_all_rested(tmp_path):
+    task = tmp_path / "7" / "task"
+    for name, call in (("7", "230 0x1"), ("8", "202 0x1")):
+        (task / name).mkdir(parents=True)
+        (task / name / "syscall").write_text(call)
+        (task / name / "schedstat").write_text("1 1 5")
+        (task / name / "stat").write_text(f"{name} (node) S 2")
+    (tmp_path / "7" / "exe").symlink_to("/opt/ros/lib/add_markers")
+    threads = ProcessThreads(7, tmp_path, times=lambda: (0.0, 0.0))
+    for _ in range(WATCHES):  # thread 8 is learned not to
+        threads.may_poll()
+        for wall in (1.0, 2.0):
+            threads._polling.watch(wall, ["7", "8"])
+        threads.begin_barrier()
+    threads.may_poll()
+    assert not threads.have_polled(), "no look has found it at rest"
+    assert threads.are_resting()
+    assert not threads.have_polled()
+    (task / "8" / "schedstat").write_text("1 1 6")
+    assert not threads.have_polled()
+    (task / "7" / "schedstat").write_text("1 1 6")
+    assert threads.have_polled()
+    threads.close()
 
 
 def test_a_node_that_ends_between_two_looks_at_its_threads_waits_for_no_clock(tmp_path):

@@ -14,7 +14,6 @@ from typing import (
     List,
     Mapping,
     Optional,
-    Set,
     Tuple,
 )
 
@@ -176,6 +175,9 @@ class CallMonitor:
         members: Returns the names of the synchronized nodes; none while nothing is synchronised.
         note: Called with a text.
         harmless: Resolved names of further services that change nothing in the simulation.
+
+    Attributes:
+        callers: Nodes that have called a service and are not synchronized; without those of ``harmless``.
     """
 
     def __init__(
@@ -185,7 +187,8 @@ class CallMonitor:
         harmless: Collection[str] = (),
     ):
         self._members, self._note = members, note
-        self._known: Set[str] = set(harmless)
+        self._harmless, self._known = frozenset(harmless), set(harmless)
+        self.callers: FrozenSet[str] = frozenset()
 
     def check(self, service: str, caller: str) -> None:
         """Note a call, the first of each service.
@@ -195,7 +198,11 @@ class CallMonitor:
             caller: Name of the calling node.
         """
         members = self._members()
-        if not members or caller in members or service in self._known:
+        if not members or caller in members:
+            return
+        if service not in self._harmless and caller not in self.callers:
+            self.callers |= {caller}
+        if service in self._known:
             return
         if not is_read_only(service):
             self._known.add(service)

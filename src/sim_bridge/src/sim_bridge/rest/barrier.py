@@ -41,12 +41,14 @@ class AwaitedRest:
             do.
         quiet: Time for which all nodes must rest [wall s].
         from_first_rest: Count it from the first look at which they did, not from the barrier's begin.
+        have_polled: Whether all threads that look at the clock have done so since that look, which is enough.
     """
 
     nodes: Mapping[str, Callable[[], bool]]
     awaited: Container[str]
     quiet: float
     from_first_rest: bool = False
+    have_polled: Callable[[], bool] = lambda: False
 
 
 @dataclass
@@ -144,9 +146,11 @@ class RestBarrier:
             return False
         barrier.rests += 1
         barrier.quiet_since = wall if barrier.quiet_since is None else barrier.quiet_since
-        is_over = barrier.rests >= LOOKS and wall - barrier.quiet_since >= quiet
-        pause = min(quiet if rest.from_first_rest else quiet / LOOKS, barrier.quiet_since + quiet - wall)
-        barrier.next_look = wall + max(LOOK_SECONDS, pause)
+        rested = wall - barrier.quiet_since
+        is_enough = rested >= quiet or rest.from_first_rest and rested >= LOOK_SECONDS and rest.have_polled()
+        is_over = barrier.rests >= LOOKS and is_enough
+        spread = LOOK_SECONDS if rest.from_first_rest else quiet / LOOKS
+        barrier.next_look = wall + max(LOOK_SECONDS, min(spread, quiet - rested))
         if is_over:
             self._barrier = None
         return is_over

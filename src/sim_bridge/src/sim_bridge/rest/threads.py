@@ -41,6 +41,7 @@ class ProcessThreads:
 
     Attributes:
         take_turns: Whether the preloaded library has the threads run one after another.
+        is_native: Whether its program is not Python, whose threads wait for the clock itself.
     """
 
     def __init__(
@@ -54,13 +55,11 @@ class ProcessThreads:
         self._times = times or self._measured_times
         self._at_rest: Optional[Tuple[float, float]] = None
         self._is_backward = False
-        self._polling = PollingThreads(self._folder) if is_native(pid, proc) else None
+        self.is_native = is_native(pid, proc)
+        self._polling = PollingThreads(self._folder) if self.is_native else None
 
     def may_poll(self) -> bool:
-        """Return whether a thread may look at the clock again and again, and learn it at this barrier.
-
-        Threads of Python wait for the clock itself, those of a process that has ended for nothing.
-        """
+        """Return whether a thread may look at the clock again and again, and learn it at this barrier."""
         with suppress(ProcessLookupError):
             return self._polling is not None and self._polling.may_be_any(self._names())
         return False
@@ -90,12 +89,18 @@ class ProcessThreads:
         if self._polling is not None:
             self._polling.watch(self._at_rest[0], names)
         if before is None:
+            if self._polling is not None:
+                self._polling.mark(names)
             return True
         wall, processor = (now - then for now, then in zip(self._at_rest, before))
         if processor <= REST_SECONDS:
             return True
         is_polling_alone = self._polling is not None and not self._polling.have_others_run()
         return is_polling_alone and processor <= IDLE_SHARE * wall + IDLE_SECONDS
+
+    def have_polled(self) -> bool:
+        """Return whether all threads that look at the clock have since the first look at which all waited."""
+        return self._polling is None or self._at_rest is not None and self._polling.have_polled()
 
     def close(self) -> None:
         """Close the files of the threads."""
@@ -172,6 +177,7 @@ class PollingThreads:
         self._seen: Optional[Dict[str, bytes]] = None
         self._since = 0.0
         self._others: Dict[str, bytes] = {}
+        self._marks: Dict[str, bytes] = {}
         self._sleeping: FrozenSet[str] = frozenset()
 
     def may_be_any(self, names: List[str]) -> bool:
@@ -203,6 +209,14 @@ class PollingThreads:
             watches, runs = self._counts.get(name, (0, 0))
             self._counts[name] = (watches + 1, runs + (now[name] != self._seen[name]))
         self._seen, self._since = now or None, wall
+
+    def mark(self, names: List[str]) -> None:
+        """Note how often the threads have run that may look at the clock."""
+        self._marks = {name: self._runs(name) for name in names if self._may_poll(name)}
+
+    def have_polled(self) -> bool:
+        """Return whether all of these have run since they were marked."""
+        return all(self._runs(name) != runs for name, runs in self._marks.items())
 
     def have_others_run(self) -> bool:
         """Return whether threads that do not look at the clock have run since the last call or first look."""

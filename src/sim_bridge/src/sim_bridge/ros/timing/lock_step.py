@@ -76,8 +76,8 @@ class LockStep:
             ANSWER_TOPIC, Answer, self._on_answer, queue_size=100, tcp_nodelay=True
         )
         speed = f"{self._name}/set_parameters"
-        monitor = CallMonitor(self._synchronised_nodes, self._on_unsynchronised, harmless=(speed,))
-        install(before_call=delaying_calls(lambda number: None, monitor))
+        self._monitor = CallMonitor(self._synchronised_nodes, self._on_unsynchronised, harmless=(speed,))
+        install(before_call=delaying_calls(lambda number: None, self._monitor))
 
     @property
     def members(self) -> FrozenSet[str]:
@@ -93,6 +93,11 @@ class LockStep:
     def unable(self) -> FrozenSet[str]:
         """Names of the nodes to synchronise that do not support it."""
         return self._connections.unable
+
+    @property
+    def callers(self) -> FrozenSet[str]:
+        """Names of the nodes that are not synchronised and have called the simulator's services."""
+        return self._monitor.callers
 
     @property
     def is_answered(self) -> bool:

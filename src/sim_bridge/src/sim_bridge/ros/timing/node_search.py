@@ -26,14 +26,12 @@ class FoundNode(NamedTuple):
     Attributes:
         pid: Its process; None on another machine.
         rule: Rule by which it is paced.
-        takes_part: Whether another node that is not an observer subscribes to one of its topics.
         is_known: Whether it has had the time to subscribe to the clock, so that its rule is final.
-        receivers: Other nodes found that subscribe to one of its topics, without observers.
+        receivers: Other nodes, the simulator among them, that subscribe to one of its topics; no observers.
     """
 
     pid: Optional[int]
     rule: PaceRule
-    takes_part: bool
     is_known: bool
     receivers: FrozenSet[str] = frozenset()
 
@@ -136,7 +134,7 @@ class NodeSearch:
             is_known = name in on_clock or now - self._appeared.get(name, now) > START_SECONDS
             facts = NodeFacts(name, program, name == MASTER or name in on_clock or not is_known)
             rule = choose_rule(facts, self._named, self._known)
-            found[name] = FoundNode(pid, rule, False, is_known)
+            found[name] = FoundNode(pid, rule, is_known)
         others = {name for name, node in found.items() if node.rule.kind != "observe"} | {rospy.get_name()}
         receivers: Dict[str, Set[str]] = {}
         for topic in published.keys() - LOG_TOPICS:
@@ -144,9 +142,7 @@ class NodeSearch:
                 subscribers = others.intersection(subscribed.get(topic, ())) - {name}
                 receivers.setdefault(name, set()).update(subscribers)
         for name, names in receivers.items():
-            found[name] = found[name]._replace(
-                takes_part=bool(names), receivers=frozenset(names & found.keys())
-            )
+            found[name] = found[name]._replace(receivers=frozenset(names))
         return found
 
 

@@ -2,7 +2,8 @@
 
 import time
 from enum import Enum
-from typing import Callable, Dict, FrozenSet, List, Mapping, Optional, Set, Tuple
+from functools import partial
+from typing import Callable, Collection, Dict, FrozenSet, List, Mapping, Optional, Set, Tuple
 
 import rospy
 from std_msgs.msg import String
@@ -21,7 +22,7 @@ from sim_bridge.rest.barrier import (
     RestBarrier,
 )
 from sim_bridge.rest.rules import PaceRule
-from sim_bridge.rest.sent_messages import TICKS, SentCounts, are_any_woken, sent_counts
+from sim_bridge.rest.sent_messages import TICKS, SentCounts, SentMessages, acting_nodes, sent_counts
 from sim_bridge.rest.threads import KernelThreads, ProcessThreads
 from sim_bridge.ros.call_queue import CallQueue
 from sim_bridge.ros.timing.connection_monitor import CONNECT_SECONDS
@@ -109,6 +110,23 @@ class _NewConnections:
         return True
 
 
+class _StatedRules:
+    """Logs and publishes the rules of the nodes."""
+
+    def __init__(self) -> None:
+        self._sentences: Dict[str, str] = {}
+        self._topic = rospy.Publisher(PACE_TOPIC, String, queue_size=1, latch=True)
+
+    def state(self, name: str, sentence: str) -> bool:
+        """State the rule of a node, unless it was; return whether it is new."""
+        if self._sentences.get(name) == sentence:
+            return False
+        self._sentences[name] = sentence
+        rospy.loginfo("%s", sentence)
+        self._topic.publish("\n".join(self._sentences[each] for each in sorted(self._sentences)))
+        return True
+
+
 class PacedNodes:
     """Holds simulated time by the rules of the nodes; called in the thread that owns the scene.
 
@@ -144,18 +162,15 @@ class PacedNodes:
         self._ended: Dict[str, int] = {}
         self._nodes: Dict[str, FoundNode] = {}
         self._taken: Tuple[object, ...] = (None,)
-        self._wanted: FrozenSet[str] = frozenset()
-        self._synchronised: FrozenSet[str] = frozenset()
-        self._reported: FrozenSet[str] = frozenset()
-        self._sentences: Dict[str, str] = {}
-        self._sentences_topic = rospy.Publisher(PACE_TOPIC, String, queue_size=1, latch=True)
+        nobody: FrozenSet[str] = frozenset()
+        self._wanted = self._synchronised = self._callers = self._reported = nobody
+        self._rules = _StatedRules()
         self._submitted = self._seen_changes = 0
         self._connections = _NewConnections(search, remark)
         self._settled_at, self._is_graph_new = 0.0, False
         self._wait: Optional[AwaitedRest] = None
         self._is_answered = False
-        self._sent_before: SentCounts = {}
-        self._sent_now: SentCounts = {}
+        self._sent = SentMessages()
 
     @property
     def names(self) -> FrozenSet[str]:
@@ -181,9 +196,10 @@ class PacedNodes:
         slow.intersection_update(self._awaited())
         return frozenset(name[1:] for name in slow.union(self._wanted.intersection(self._ended)))
 
-    def set_nodes(self, names: FrozenSet[str], synchronised: FrozenSet[str]) -> None:
-        """Set the names of the nodes to wait for, and of those for which the simulation waits elsewhere."""
+    def set_nodes(self, names: FrozenSet[str], synchronised: FrozenSet[str], callers: FrozenSet[str]) -> None:
+        """Set the nodes to wait for, those waited for elsewhere, and callers of the simulator's services."""
         self._wanted, self._synchronised = names | (self._named - synchronised), synchronised
+        self._callers = callers
         if self.are_any and self._search.start():
             install(notes_receipt=True)
 
@@ -220,12 +236,8 @@ class PacedNodes:
         is_check_due = is_settling and before is Before.CLOCK
         if self._connections.are_missing(stamp, is_check_due, self._is_graph_new):
             return False
-        if not self._barrier.is_begun:
-            sent = _sent(self._nodes)
-            must_look = is_settling or has_news or before in (Before.SENSORS, Before.TICK)
-            if not must_look and not self._are_woken(sent, before is Before.CLOCK or is_clock_sent):
-                return True
-            self._sent_now, self._wait = sent, None
+        if not self._barrier.is_begun and not self._must_wait(before, has_news, is_settling, is_clock_sent):
+            return True
         self._is_answered = is_answered
         if self._wait is None:
             chosen = self._chosen(is_settling or before is Before.TICK)
@@ -234,7 +246,8 @@ class PacedNodes:
         self._report()
         if is_passed:
             self._connections.check_again()
-            self._is_graph_new, self._sent_before = False, self._sent_now
+            self._is_graph_new = False
+            self._sent.note_rest()
         return is_passed
 
     def _wait_for(self, chosen: Set[str], before: Before, is_clock_sent: bool) -> AwaitedRest:
@@ -243,10 +256,14 @@ class PacedNodes:
         quiet = _quiet(chosen, self._nodes, self._threads, before, is_clock_sent)
         if self._is_graph_new:
             quiet = SETTLING_QUIET_SECONDS, False
-        nodes = {name: self._rest_of(name, self._threads[name]) for name in sorted(chosen, reverse=True)}
-        nodes[SYNCHRONISED] = lambda: self._is_answered
+        # First what is quickly known.
+        nodes: Dict[str, Callable[[], bool]] = {SYNCHRONISED: lambda: self._is_answered}
+        for name in sorted(chosen, reverse=True):
+            nodes[name] = partial(self._is_resting, name, self._threads[name])
         nodes[MESSAGES] = lambda: self._kernel.are_resting() and not has_undelivered(chosen)
-        return AwaitedRest(nodes, self._awaited() | {SYNCHRONISED, MESSAGES}, *quiet)
+        awaited = self._awaited() | {SYNCHRONISED, MESSAGES}
+        timed = _timed(chosen, self._nodes, self._threads) if quiet[1] else []
+        return AwaitedRest(nodes, awaited, *quiet, lambda: all(each.have_polled() for each in timed))
 
     @property
     def pause(self) -> float:
@@ -270,27 +287,33 @@ class PacedNodes:
             return {name for name, kind in kinds.items() if kind != "observe"}
         return {name for name, kind in kinds.items() if kind == "rest" and self._is_paced(name)}
 
-    def _are_woken(self, sent: SentCounts, with_all: bool) -> bool:
-        takes_part = {name: self._nodes[name].takes_part for name in self._chosen(False)}
-        return are_any_woken(sent, self._sent_before, takes_part, with_all)
+    def _must_wait(self, before: Before, has_news: bool, is_settling: bool, is_clock_sent: bool) -> bool:
+        """Return whether a node may have something to do that matters now."""
+        sent, chosen, is_clock_next = _sent(self._nodes), self._chosen(False), before is Before.CLOCK
+        with_all = is_clock_next or is_clock_sent and _may_wait(_timed(chosen, self._nodes, self._threads))
+        is_due = is_settling or before in (Before.SENSORS, Before.TICK) or self._sent.acting and has_news
+        if is_due or self._sent.wake_any(sent, chosen, is_clock_next, with_all):
+            self._sent.await_rest(sent)
+            self._wait = None
+            return True
+        if is_clock_sent:
+            self._sent.note_idle(sent)
+        return False
 
     def _is_paced(self, name: str) -> bool:
         return name in self._wanted or self._paces_all and name not in self._synchronised
 
     def _awaited(self) -> FrozenSet[str]:
         """Return the nodes for which the simulation has full patience."""
-        parts = (name for name, node in self._nodes.items() if node.takes_part and self._is_paced(name))
+        parts = (name for name, node in self._nodes.items() if node.receivers and self._is_paced(name))
         return self._wanted.union(parts)
 
-    def _rest_of(self, name: str, threads: ProcessThreads) -> Callable[[], bool]:
-        def is_resting() -> bool:
-            try:
-                return threads.are_resting()
-            except ProcessLookupError:
-                self._drop(name)
-                return True
-
-        return is_resting
+    def _is_resting(self, name: str, threads: ProcessThreads) -> bool:
+        try:
+            return threads.are_resting()
+        except ProcessLookupError:
+            self._drop(name)
+            return True
 
     def _drop(self, name: str) -> None:
         """Wait no longer for a node that has ended."""
@@ -315,11 +338,13 @@ class PacedNodes:
 
     def _take_found(self) -> None:
         """Take over what the search has found, unless it is what was taken last."""
-        found = (self._search.nodes, self._wanted, self._synchronised)
+        found = (self._search.nodes, self._wanted, self._synchronised, self._callers)
         if found[0] is self._taken[0] and found[1:] == self._taken[1:]:
             return
         self._taken, self._wait = found, None
         self._nodes = found[0]
+        receivers = {name: node.receivers for name, node in found[0].items()}
+        self._sent.acting = acting_nodes(receivers, {rospy.get_name(), *self._callers}, self._synchronised)
         for name in self._threads.keys() - self._nodes.keys():
             self._drop(name)
         for name, node in self._nodes.items():
@@ -333,12 +358,8 @@ class PacedNodes:
 
     def _state_rule(self, name: str, node: FoundNode) -> None:
         """Log, publish and apply the rule of a node, once."""
-        sentence = node.rule.sentence(name[1:])
-        if self._sentences.get(name) == sentence:
+        if not self._rules.state(name, sentence := node.rule.sentence(name[1:])):
             return
-        self._sentences[name] = sentence
-        rospy.loginfo("%s", sentence)
-        self._sentences_topic.publish("\n".join(self._sentences[each] for each in sorted(self._sentences)))
         if name in self._wanted:
             self._remark(sentence)
         if node.rule.kind == "stamps":
@@ -363,7 +384,7 @@ def _quiet(
 ) -> Tuple[float, bool]:
     """Return for how long chosen nodes must rest [wall s], and whether from a look at which they do."""
     if is_clock_sent and before is not Before.CLOCK:
-        may_poll = _may_poll(chosen, nodes, threads)
+        may_poll = _may_poll(_timed(chosen, nodes, threads))
         if any(threads[name].take_turns for name in chosen):
             return TURNS_QUIET_SECONDS, False
         if may_poll:
@@ -373,12 +394,21 @@ def _quiet(
     return DATA_QUIET_SECONDS, False
 
 
-def _may_poll(
-    chosen: Set[str], nodes: Mapping[str, FoundNode], threads: Mapping[str, ProcessThreads]
-) -> bool:
-    """Whether loops or timers of chosen nodes look at the clock; all are asked, so that they are learned."""
-    with_timers = [name for name in chosen if name not in nodes or nodes[name].rule.timers]
-    return sum(threads[name].may_poll() for name in with_timers) > 0
+def _timed(
+    chosen: Collection[str], nodes: Mapping[str, FoundNode], threads: Mapping[str, ProcessThreads]
+) -> List[ProcessThreads]:
+    """Return the threads of chosen nodes with timers or loops that matter."""
+    return [threads[name] for name in chosen if name not in nodes or nodes[name].rule.timers]
+
+
+def _may_poll(timed: List[ProcessThreads]) -> bool:
+    """Whether loops or timers look at the clock; all are asked, so that they are learned."""
+    return sum(each.may_poll() for each in timed) > 0
+
+
+def _may_wait(timed: List[ProcessThreads]) -> bool:
+    """Whether a thread may wait for a time: no one of Python is known not to."""
+    return _may_poll(timed) or not all(each.is_native for each in timed)
 
 
 def _are_sending(chosen: Set[str], nodes: Mapping[str, FoundNode]) -> bool:

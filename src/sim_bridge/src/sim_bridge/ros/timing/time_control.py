@@ -158,7 +158,8 @@ class TimeControl:
         if 0.0 < self.speed <= REAL_TIME:
             return True
         reporting = {f"/{name}" for name in self._pacer.reporting}
-        self._paced.set_nodes(self._lock_step.unable - reporting, self._lock_step.members | reporting)
+        synchronised = self._lock_step.members | reporting
+        self._paced.set_nodes(self._lock_step.unable - reporting, synchronised, self._lock_step.callers)
         return self._paced.have_rested(
             before, self._scene.stamp, self._lock_step.is_answered, self._is_clock_sent
         )
