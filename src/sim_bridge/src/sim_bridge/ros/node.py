@@ -139,7 +139,7 @@ class Bridge:
 
     def _step(self):
         results = self._robots.step()
-        if self._time.may_defer and any(_has_scan(result) for result in results.values()):
+        if any(map(_has_scan, results.values())) and self._time.may_defer(self._robots.scan_topics()):
             self._robots.publish_motion(results)
             self._time.defer(partial(self._robots.publish_sensors, results))
         else:

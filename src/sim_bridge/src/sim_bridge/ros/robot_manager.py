@@ -1,11 +1,12 @@
 """Robots of a scene and their topics."""
 
-from typing import Dict, List, Mapping
+from typing import Dict, FrozenSet, List, Mapping
 
 import rospy
 from tf2_msgs.msg import TFMessage
 
 from planar import Pose2
+from planar_ros.messages.conversion import LaserScanArrays
 from sim_bridge.description import RobotProfile
 from sim_bridge.robot import StepResult
 from sim_bridge.ros.call_queue import CallQueue
@@ -65,6 +66,11 @@ class RobotManager:
         topics = self._robots.pop(name, None)
         if topics is not None:
             topics.close()
+
+    def scan_topics(self) -> FrozenSet[str]:
+        """Return the names of the topics with scans of a laser scanner."""
+        scans = (each for each in self.publishers() if each.data_class is LaserScanArrays)
+        return frozenset(each.resolved_name for each in scans)
 
     def publishers(self) -> List[CountingPublisher]:
         """Return the publishers of all topics of the robots."""

@@ -166,11 +166,9 @@ class PacedNodes:
         self._wanted = self._synchronised = self._callers = self._reported = nobody
         self._rules = _StatedRules()
         self._submitted = self._seen_changes = 0
-        self._connections = _NewConnections(search, remark)
-        self._settled_at, self._is_graph_new = 0.0, False
+        self._connections, self._sent = _NewConnections(search, remark), SentMessages()
+        self._settled_at, self._is_graph_new, self._is_answered = 0.0, False, False
         self._wait: Optional[AwaitedRest] = None
-        self._is_answered = False
-        self._sent = SentMessages()
 
     @property
     def names(self) -> FrozenSet[str]:
@@ -207,6 +205,10 @@ class PacedNodes:
     def are_any(self) -> bool:
         """Whether there may be nodes to wait for."""
         return bool(self._wanted) or self._paces_all
+
+    def may_await(self, names: Set[str]) -> bool:
+        """Return whether one of some nodes is waited for, or not known yet."""
+        return self.are_any and not names.isdisjoint(self._chosen(False) | names - self._search.searched)
 
     def have_rested(self, before: Before, stamp: float, is_answered: bool, is_clock_sent: bool) -> bool:
         """Return whether the nodes have rested at this barrier.

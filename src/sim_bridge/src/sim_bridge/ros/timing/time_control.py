@@ -3,7 +3,7 @@
 import time
 from concurrent.futures import CancelledError, Future
 from dataclasses import dataclass
-from typing import Callable, List, Optional
+from typing import Callable, FrozenSet, List, Optional
 
 import rospy
 from rosgraph_msgs.msg import Clock
@@ -15,6 +15,7 @@ from planar_ros.lockstep.ticker import PROGRESS_TOPIC
 from planar_ros.messages.conversion import time_of
 from planar_ros.node.parameters import SettingsReconfigureServer
 from planar_ros.node.readiness import ReadinessMonitor, StallReporter
+from rospy_transport.connections import outgoing
 from sim_bridge.config import RunTimeSettings
 from sim_bridge.pacing import REAL_TIME, Pacer
 from sim_bridge.ros.call_queue import CallQueue
@@ -96,10 +97,10 @@ class TimeControl:
         self._stall_reporter.update([] if may_step else self._waiting_for())
         return may_step
 
-    @property
-    def may_defer(self) -> bool:
-        """Whether a part of a step may be published later, when nodes have processed the other part."""
-        return self._paced.are_any and not self._requests
+    def may_defer(self, topics: FrozenSet[str]) -> bool:
+        """Return whether topics may be published later: nodes receive them that are not synchronised."""
+        receivers = {receiver for receiver, topic, _ in outgoing() if topic in topics}
+        return not self._requests and self._paced.may_await(receivers)
 
     def defer(self, publish: Callable[[], None]) -> None:
         """Publish a part of a step when the nodes that are not synchronised have processed the other part.
