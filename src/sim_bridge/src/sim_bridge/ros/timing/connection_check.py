@@ -15,6 +15,8 @@ from rospy_transport.connections import outgoing
 from supervision.ros.node_api import TimedTransport
 
 ANSWER_SECONDS = 1.0
+# Code of an answer to a call of the master or a node.
+SUCCESS = 1
 _UNAVAILABLE = (OSError, xmlrpc.client.Error)
 NodesByName = Dict[str, List[str]]
 
@@ -121,5 +123,7 @@ def _is_local(uri: str) -> bool:
 
 def _query(uri: str, method: str, *arguments: str) -> Any:
     proxy: Any = xmlrpc.client.ServerProxy(uri, transport=TimedTransport(ANSWER_SECONDS))
-    _code, _status, value = getattr(proxy, method)(rospy.get_name(), *arguments)
+    code, status, value = getattr(proxy, method)(rospy.get_name(), *arguments)
+    if code != SUCCESS:  # the master of a node that has gone
+        raise ConnectionError(status)
     return value
