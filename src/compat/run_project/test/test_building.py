@@ -8,6 +8,7 @@ from run_project.checkout.layout import read_checkout
 from run_project.checkout.placement import Placement
 from run_project.checkout.substitutes import complete_package
 from run_project.preparation import building
+from run_project.preparation.build_stamp import BuildStamp
 from run_project.preparation.building import (
     FRESH_CLONE,
     Workspace,
@@ -124,6 +125,17 @@ def test_a_project_is_not_built_again_before_something_changes(builds, tmp_path)
 def test_a_project_is_built_again_after_a_build_that_was_not_complete(builds):
     assert [builds("make: *** [pick] Error 1"), builds("make: *** [pick] Error 1")] == [True, True]
     assert [builds(), builds()] == [True, False]
+
+
+def test_a_mark_that_each_copy_gets_anew_is_no_change(tmp_path):
+    mark = tmp_path / "tree" / "turtlebot" / "CATKIN_IGNORE"
+    mark.parent.mkdir(parents=True)
+    mark.touch()
+    BuildStamp(tmp_path / "built", tmp_path / "tree", ()).write()
+    os.utime(mark, (1, 1))
+    assert BuildStamp(tmp_path / "built", tmp_path / "tree", ()).is_current
+    mark.write_text("later")
+    assert not BuildStamp(tmp_path / "built", tmp_path / "tree", ()).is_current
 
 
 def test_turtlebot3_model_has_a_default(tmp_path, monkeypatch):

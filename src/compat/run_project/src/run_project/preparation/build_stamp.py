@@ -52,10 +52,11 @@ def _states_in(tree: Path) -> Iterator[str]:
 
 
 def _state_of(path: Path) -> str:
-    """Path, size and time of a file, or the target of a link."""
+    """Path, size and time of a file, or the target of a link; an empty file may be made anew at any time."""
     with contextlib.suppress(OSError):
         if path.is_symlink():
             return f"{path} -> {os.readlink(path)}"
         found = path.stat()
-        return f"{path} {found.st_size} {found.st_mtime_ns} {found.st_mode}"
+        changed = found.st_mtime_ns if found.st_size else 0
+        return f"{path} {found.st_size} {changed} {found.st_mode}"
     return str(path)
