@@ -127,7 +127,7 @@ def test_a_project_is_built_again_after_a_build_that_was_not_complete(builds):
     assert [builds(), builds()] == [True, False]
 
 
-def test_a_mark_that_each_copy_gets_anew_is_no_change(tmp_path):
+def test_a_mark_that_is_made_again_in_each_copy_is_no_change(tmp_path):
     mark = tmp_path / "tree" / "turtlebot" / "CATKIN_IGNORE"
     mark.parent.mkdir(parents=True)
     mark.touch()

@@ -195,15 +195,30 @@ def test_markers_alone_are_sufficient_unless_goals_are_required():
     assert not judge(record, requires_goals=True).success
 
 
-def test_a_status_is_reported_once():
+def test_a_status_that_comes_before_its_goal_is_reported_with_it():
+    """They come on different connections."""
     record = Record()
     record.update_status("a", ACTIVE)
+    assert record.lines == []
+    record.send_goal("a", (1.0, 2.0))
+    record.send_goal("a", (1.0, 2.0))
+    assert record.lines == ["goal 1 at (1.00, 2.00) active"]
+    record.update_status("b", ACTIVE)
+    record.update_status("b", SUCCEEDED)
+    record.send_goal("b", (1.0, 2.0))
+    assert record.lines[1:] == ["goal 2 succeeded"]
+
+
+def test_a_status_is_reported_once():
+    record = Record()
+    record.send_goal("a", (1.0, 2.0))
     record.update_status("a", ACTIVE)
-    assert record.lines == ["goal 1 active"]
+    record.update_status("a", ACTIVE)
+    assert record.lines == ["goal 1 at (1.00, 2.00) active"]
     assert not record.all_goals_ended
     record.at(1.4).update_status("a", SUCCEEDED, "Goal reached.", kind=GoalEnded)
     assert record.all_goals_ended
-    assert record.lines == ["goal 1 active", "goal 1 succeeded"]
+    assert record.lines[1:] == ["goal 1 at (1.00, 2.00) succeeded"]
     assert record.goals["a"].ended == 1.4
 
 

@@ -13,6 +13,8 @@ import threading
 import time
 from typing import Callable, Optional
 
+from run_project.time_hold import TimeHold
+
 POLL_SECONDS = 0.01
 # Wall time without a step of the clock after which no simulation runs [s].
 STANDSTILL_SECONDS = 1.0
@@ -22,6 +24,8 @@ QUIET_REPORTS = 2
 # Wall time for which programs that start can stop the time of one sleep [s].
 STARTING_SECONDS = 30.0
 MAX_REQUEST_BYTES = 64
+# Less than a step of the simulation, more than errors of rounding [s].
+ROUNDING = 1e-3
 
 
 class ScriptTime:
@@ -53,7 +57,7 @@ class ScriptTime:
         if simulated > self._simulated:
             self._elapsed = self._elapsed + simulated - self._simulated if self._has_begun else simulated
             self._has_begun, self._latest_step = True, wall
-        elif is_starting and not self._has_begun and self._starting < STARTING_SECONDS:
+        elif is_starting and self._starting < STARTING_SECONDS:
             self._starting += passed
         elif wall - self._latest_step > STANDSTILL_SECONDS:
             self._elapsed += passed
@@ -70,14 +74,14 @@ class ScriptSleeps:
 
     Args:
         simulated_time: Returns the simulated time [s].
-        on_end: Called before each end of a sleep.
+        hold: Stops the simulation at the end of each sleep.
 
     Attributes:
         address: Name of the socket, in Linux's abstract namespace.
     """
 
-    def __init__(self, simulated_time: Callable[[], float], on_end: Callable[[], None]):
-        self._simulated_time, self._on_end = simulated_time, on_end
+    def __init__(self, simulated_time: Callable[[], float], hold: TimeHold):
+        self._simulated_time, self._hold = simulated_time, hold
         self._is_over = threading.Event()
         self._quiet_reports = 0
         self._is_starting = False
@@ -111,10 +115,12 @@ class ScriptSleeps:
     def sleep(self, seconds: float) -> None:
         """Wait for a time [s], or until the context is left."""
         self._quiet_reports = 0
-        elapsed = ScriptTime(time.monotonic(), self._simulated_time())
-        while elapsed.update(time.monotonic(), self._simulated_time(), self._is_starting) < seconds:
+        begin = self._simulated_time()
+        elapsed, end, wanted = ScriptTime(time.monotonic(), begin), begin + seconds, seconds - ROUNDING
+        self._hold.begin_sleep(end)
+        while elapsed.update(time.monotonic(), self._simulated_time(), self._is_starting) < wanted:
             if self._simulated_time() == 0.0 and self._quiet_reports >= QUIET_REPORTS:
                 break
             if self._is_over.wait(POLL_SECONDS):
                 return
-        self._on_end()
+        self._hold.end_sleep(end, time.monotonic())

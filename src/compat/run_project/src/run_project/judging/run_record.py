@@ -120,6 +120,7 @@ class ProjectRunRecord:
     alignment: MapAlignment = field(default_factory=MapAlignment)
     _base: Optional[Pose2] = None
     _ended_at: Dict[str, Pose2] = field(default_factory=dict)
+    _unlogged: Set[str] = field(default_factory=set)
     _shown: Dict[Tuple[str, int], Tuple[float, float]] = field(default_factory=dict)
     _reported_events: Set[Tuple[bool, int, int]] = field(default_factory=set)
 
@@ -221,7 +222,10 @@ class ProjectRunRecord:
                 self.log(f"collision with {name}")
 
     def _on_goal(self, event: GoalRequested) -> None:
-        self._goal(event.identity).place = (event.pose.x, event.pose.y)
+        goal = self._goal(event.identity)
+        goal.place = (event.pose.x, event.pose.y)
+        if event.identity in self._unlogged:
+            self._log_status(event.identity, goal)
 
     def _on_status(self, event: GoalStatusUpdated) -> None:
         goal = self._goal(event.identity)
@@ -235,9 +239,16 @@ class ProjectRunRecord:
             if self._base is not None:
                 self._ended_at[event.identity] = self._base
                 self.measure_distances()
-        detail = f": {event.text}" if event.text and status not in ("active", "succeeded") else ""
-        number = list(self.goals).index(event.identity) + 1
-        self.log(f"goal {number}{at_position(goal.place)} {status}{detail}")
+        if goal.place is None and status not in FINAL_STATUSES:
+            self._unlogged.add(event.identity)  # until the goal comes, on another connection
+        else:
+            self._log_status(event.identity, goal)
+
+    def _log_status(self, name: str, goal: ProjectGoal) -> None:
+        self._unlogged.discard(name)
+        detail = f": {goal.text}" if goal.text and goal.status not in ("active", "succeeded") else ""
+        number = list(self.goals).index(name) + 1
+        self.log(f"goal {number}{at_position(goal.place)} {goal.status}{detail}")
 
     def _on_marker(self, event: MarkerUpdated) -> None:
         if event.action == DELETE_ALL:

@@ -52,7 +52,7 @@ def _states_in(tree: Path) -> Iterator[str]:
 
 
 def _state_of(path: Path) -> str:
-    """Path, size and time of a file, or the target of a link; an empty file may be made anew at any time."""
+    """Path, size and time of a file, or the target of a link; an empty file may be made again at any time."""
     with contextlib.suppress(OSError):
         if path.is_symlink():
             return f"{path} -> {os.readlink(path)}"

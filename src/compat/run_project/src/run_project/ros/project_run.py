@@ -12,11 +12,11 @@ from typing import Dict, List, Mapping, Optional, Sequence, Set, Tuple
 
 import psutil
 import rospy
+from std_msgs.msg import Float64
 
 from evaluation.preload import preload_nodes
 from rospy_transport.node import end_registration_at_shutdown
 from run_project.judging.run_end import GONE_SECONDS, Quiet, is_over
-from run_project.real_time_limit import RealTimeLimit
 from run_project.ros.observer import Observer
 from run_project.ros.processes import (
     BusyProcesses,
@@ -29,10 +29,11 @@ from run_project.ros.processes import (
     waits_for_input,
 )
 from run_project.ros.scripted_user import ScriptedUser
-from run_project.ros.simulator_speed import SimulatorSpeed
 from run_project.script_sleeps import ScriptSleeps
 from run_project.stand_ins.sleep import SOCKET_VARIABLE
 from run_project.stand_ins.terminal import WindowLogs
+from run_project.time_hold import TimeHold
+from sim_bridge.ros.timing.time_control import HOLD_TOPIC
 from supervision.display import Display
 from supervision.errors import LaunchError
 from supervision.processes import adopt_orphans, end_descendants
@@ -101,12 +102,10 @@ class ProjectRun:
         self._node_wall = math.inf
         self.is_over_time = False
         self._busy, self._wall_sleeps = BusyProcesses(), WallSleeps()
-        self._limit = RealTimeLimit(float(str(parameters["/gazebo/speed"])), SimulatorSpeed().set)
+        speed = float(str(parameters["/gazebo/speed"]))
+        self._hold = TimeHold(speed, lambda: self.observer.simulated_time, lambda at: self._held.publish(at))
         self._resources = contextlib.ExitStack()
-        self._sleeps = ScriptSleeps(
-            lambda: self.observer.simulated_time,
-            lambda: self._limit.update(time.monotonic(), is_starting=True, has_new_window=False),
-        )
+        self._sleeps = ScriptSleeps(lambda: self.observer.simulated_time, self._hold)
 
     def __enter__(self) -> "ProjectRun":
         adopt_orphans()
@@ -121,6 +120,7 @@ class ProjectRun:
                 rospy.set_param(name, value)
             rospy.init_node("run_project", anonymous=True, disable_signals=True, log_level=rospy.ERROR)
             end_registration_at_shutdown()
+            self._held = rospy.Publisher(HOLD_TOPIC, Float64, queue_size=1, latch=True, tcp_nodelay=True)
             if self.user is not None:
                 self.user.attach(self.observer.events, self.observer.record.alignment)
             self.observer.start()
@@ -164,7 +164,7 @@ class ProjectRun:
             Why the run was cut short, or None.
         """
         deadline = time.monotonic() + timeout
-        self._limit.start(time.monotonic())
+        self._hold.start(time.monotonic())
         script = self._start_script()
         observer, latest_enter = self.observer, time.monotonic()
         moved_wall, moved_time = time.monotonic(), -1.0
@@ -176,7 +176,7 @@ class ProjectRun:
                 self._log_event(f"{observer.simulated_time:7.1f} s  window {window}")
             listed, processes = self._list_processes(now)
             is_starting = self._is_something_starting(listed)
-            self._limit.update(now, is_starting, bool(windows))
+            self._hold.update(now, is_starting, bool(windows))
             commands, awaited = [each.command for each in listed], str(self._parameters["/gazebo/wait_for"])
             self._sleeps.update(is_starting, is_time_due(commands, awaited, observer.nodes.names))
             self._display.show(observer.status())
@@ -199,7 +199,7 @@ class ProjectRun:
                 return f"{what} {STALLED_SECONDS:g} s"
             if not is_master_online():
                 return "the ROS master has ended"
-            time.sleep(_pause(observer))
+            time.sleep(STARTING_POLL_SECONDS if self._hold.is_starting else _pause(observer))
 
     def _list_processes(self, now: float) -> Tuple[List[ListedProcess], List[psutil.Process]]:
         """All processes of the run but the helpers, and of these the project's own nodes."""

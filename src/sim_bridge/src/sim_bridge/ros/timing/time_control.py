@@ -1,5 +1,6 @@
 """Control of simulated time: pausing, stepping, resetting, and the speed."""
 
+import math
 import time
 from concurrent.futures import CancelledError, Future
 from dataclasses import dataclass
@@ -8,7 +9,7 @@ from typing import Callable, FrozenSet, List, Optional
 import rospy
 from rosgraph_msgs.msg import Clock
 from sim_bridge_msgs.srv import Step, StepResponse
-from std_msgs.msg import Header
+from std_msgs.msg import Float64, Header
 
 from planar_ros.lockstep import transport
 from planar_ros.lockstep.ticker import PROGRESS_TOPIC
@@ -24,6 +25,8 @@ from sim_bridge.ros.timing.lock_step import LockStep
 from sim_bridge.ros.timing.paced_nodes import Before, PacedNodes
 from sim_bridge.scene import Scene
 
+# Latched: simulated time beyond which no step goes [s]; infinite for none.
+HOLD_TOPIC = "/simulation/hold"
 # Longest single wait [wall s], so that a shutdown is noticed soon.
 LONGEST_WAIT_SECONDS = 0.05
 
@@ -70,6 +73,8 @@ class TimeControl:
         self._calls = calls
         self._requests: List[_StepRequest] = []
         self._deferred: Optional[Callable[[], None]] = None
+        self._held_at = math.inf
+        rospy.Subscriber(HOLD_TOPIC, Float64, self._on_hold, queue_size=10, tcp_nodelay=True)
         rospy.Subscriber(PROGRESS_TOPIC, Header, self._on_progress, queue_size=100, tcp_nodelay=True)
         rospy.Service("~step", Step, self._on_step)
         self._stall_reporter = StallReporter()
@@ -135,7 +140,9 @@ class TimeControl:
             return self._wait(self._paced.pause)
         self._pacer.synchronised_nodes = self._lock_step.member_names | self._paced.names
         self._pacer.limited_by = self._paced.limiting
-        longest = 0.0 if self.is_paused else self._pacer.longest_jump
+        if self._is_held:
+            return self._wait(LONGEST_WAIT_SECONDS)
+        longest = 0.0 if self.is_paused or self._held_at < math.inf else self._pacer.longest_jump
         skipped = self._idle.update(longest, not self._paced.are_any)
         if skipped is None or self._calls.has_pending:
             return self._wait(LONGEST_WAIT_SECONDS)
@@ -147,6 +154,14 @@ class TimeControl:
         for name in self._pacer.give_up(stamp, wall):
             rospy.logwarn("no progress of %s: the simulation goes on without it in real time", name)
         return self._wait(min(delay, LONGEST_WAIT_SECONDS))
+
+    @property
+    def _is_held(self) -> bool:
+        """Whether the next step would pass the time of ``HOLD_TOPIC``; the first one always may."""
+        return self._steps > 0 and self._scene.stamp + 0.5 * self._scene.step_seconds > self._held_at
+
+    def _on_hold(self, message: Float64) -> None:
+        self._calls.submit(lambda: setattr(self, "_held_at", message.data), acts=False)
 
     def _skip(self, count: int) -> None:
         """Skip steps of an idle time."""
@@ -176,7 +191,7 @@ class TimeControl:
         return False
 
     def _waiting_for(self) -> List[str]:
-        if self.is_paused and not self._requests:
+        if (self.is_paused or self._is_held) and not self._requests:
             return []
         return [
             *self._lock_step.waiting_for(),
