@@ -292,15 +292,15 @@ class PacedNodes:
     def _must_wait(self, before: Before, has_news: bool, is_settling: bool, is_clock_sent: bool) -> bool:
         """Return whether a node may have something to do that matters now."""
         sent, chosen, is_clock_next = _sent(self._nodes), self._chosen(False), before is Before.CLOCK
-        with_all = is_clock_next or is_clock_sent and _may_wait(_timed(chosen, self._nodes, self._threads))
-        is_due = is_settling or before in (Before.SENSORS, Before.TICK) or self._sent.acting and has_news
-        if is_due or self._sent.wake_any(sent, chosen, is_clock_next, with_all):
-            self._sent.await_rest(sent)
-            self._wait = None
-            return True
-        if is_clock_sent:
-            self._sent.note_idle(sent)
-        return False
+        if not (is_settling or before in (Before.SENSORS, Before.TICK) or self._sent.acting and has_news):
+            with_all = is_clock_next or is_clock_sent and _may_wait(chosen, self._nodes, self._threads)
+            if not self._sent.wake_any(sent, chosen, is_clock_next, with_all):
+                if is_clock_sent:
+                    self._sent.note_idle(sent)
+                return False
+        self._sent.await_rest(sent)
+        self._wait = None
+        return True
 
     def _is_paced(self, name: str) -> bool:
         return name in self._wanted or self._paces_all and name not in self._synchronised
@@ -408,8 +408,11 @@ def _may_poll(timed: List[ProcessThreads]) -> bool:
     return sum(each.may_poll() for each in timed) > 0
 
 
-def _may_wait(timed: List[ProcessThreads]) -> bool:
-    """Whether a thread may wait for a time: no one of Python is known not to."""
+def _may_wait(
+    chosen: Collection[str], nodes: Mapping[str, FoundNode], threads: Mapping[str, ProcessThreads]
+) -> bool:
+    """Whether a thread of chosen nodes may wait for a time, as those of Python always may."""
+    timed = _timed(chosen, nodes, threads)
     return _may_poll(timed) or not all(each.is_native for each in timed)
 
 
