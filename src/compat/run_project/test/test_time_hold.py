@@ -21,7 +21,7 @@ class Held:
             self.hold.update(*step)
 
 
-STARTED = ((0.2, True, True), (3.0, True, False), (3.2, False, True), (3.4, False, False))
+STARTED = ((0.2, True, True), (3.0, True, False), (3.1, False, True), (3.2, False, False))
 
 
 def test_time_passes_when_the_last_window_is_open():

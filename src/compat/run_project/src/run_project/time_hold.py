@@ -6,7 +6,7 @@ from typing import Callable, List
 
 REAL_TIME = 1.0
 # Wall time after the last start [s]: what a program does first, and the next one, may follow.
-PAUSE_SECONDS = 0.5
+PAUSE_SECONDS = 0.3
 # Wall time after the last window from which on starting no longer counts [s]: a program is started for ever.
 NO_MORE_WINDOWS_SECONDS = 60.0
 

@@ -58,6 +58,9 @@ CONTACTS = EventTopic("contacts", String, read.contacts, (kinds.BodiesTouched,),
 TRUTH = EventTopic("base_pose_ground_truth", Odometry, read.truth, (TruthUpdated,), True)
 ESTIMATE = EventTopic("amcl_pose", PoseWithCovarianceStamped, read.estimate, (kinds.EstimateUpdated,), True)
 GOAL_REQUESTS = EventTopic("move_base/goal", MoveBaseActionGoal, read.goal_request, (kinds.GoalRequested,))
+ACCEPTED_GOALS = EventTopic(
+    "move_base/current_goal", PoseStamped, read.accepted_goal, (kinds.GoalAccepted,), True
+)
 GOAL_STATUSES = EventTopic("move_base/status", GoalStatusArray, read.statuses, (kinds.GoalStatusUpdated,))
 GOAL_RESULTS = EventTopic("move_base/result", MoveBaseActionResult, read.goal_end, (kinds.GoalEnded,), True)
 TOPICS = (
@@ -71,7 +74,7 @@ TOPICS = (
     EventTopic("map", OccupancyGridArrays, read.grid, (kinds.MapPublished,)),
     GOAL_REQUESTS,
     GOAL_STATUSES,
-    EventTopic("move_base/current_goal", PoseStamped, read.accepted_goal, (kinds.GoalAccepted,), True),
+    ACCEPTED_GOALS,
     GOAL_RESULTS,
     EventTopic("move_base/NavfnROS/plan", Path, read.plan, (kinds.PlanUpdated,)),
     EventTopic("deliver/goal", DeliverActionGoal, read.mission_request, (kinds.MissionRequested,)),

@@ -22,6 +22,8 @@ from rospy_transport.replacements import BeforeCall, ImmediateConnection
 
 INSTANT_TOPIC, ANSWER_TOPIC, CLOCK_TOPIC = "/simulation/moment", "/simulation/answer", "/clock"
 STATIC_TOPIC = "/tf_static"
+# Latched: simulated time beyond which no step goes [s]; infinite for none.
+HOLD_TOPIC = "/simulation/hold"
 # Sent outside the batches: instants and answers carry the counts of all other messages, the clock the time.
 UNCOUNTED = frozenset((INSTANT_TOPIC, ANSWER_TOPIC, CLOCK_TOPIC))
 # Maximum number of messages to an observer in one batch.

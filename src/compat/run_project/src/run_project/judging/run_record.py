@@ -11,6 +11,7 @@ from evaluation.events import (
     BodiesTouched,
     ClockAdvanced,
     EstimateUpdated,
+    GoalAccepted,
     GoalEnded,
     GoalRequested,
     GoalStatusUpdated,
@@ -52,7 +53,8 @@ class ProjectGoal:
     Attributes:
         status: Name of the actionlib status.
         text: Status text of the action server.
-        place: x, y in the frame of the goal [m]; None if the goal message was not received.
+        place: x, y in the frame of the goal, or of the map if the goal message was not received [m]; None if
+            navigation has not reported it either.
         sent: Simulated time at which it was sent [s].
         ended: Simulated time at which it ended [s].
         distance: True distance between robot and goal at that time, in the frame of the map [m].
@@ -120,6 +122,7 @@ class ProjectRunRecord:
     alignment: MapAlignment = field(default_factory=MapAlignment)
     _base: Optional[Pose2] = None
     _ended_at: Dict[str, Pose2] = field(default_factory=dict)
+    _accepted: Optional[Tuple[float, float]] = None  # place of a goal of which nothing else is known yet
     _unlogged: Set[str] = field(default_factory=set)
     _shown: Dict[Tuple[str, int], Tuple[float, float]] = field(default_factory=dict)
     _reported_events: Set[Tuple[bool, int, int]] = field(default_factory=set)
@@ -131,6 +134,7 @@ class ProjectRunRecord:
         events.subscribe(EstimateUpdated, self._on_estimate)
         events.subscribe(BodiesTouched, self._on_contact)
         events.subscribe(GoalRequested, self._on_goal)
+        events.subscribe(GoalAccepted, self._on_accepted)
         events.subscribe(GoalStatusUpdated, self._on_status)
         events.subscribe(GoalEnded, self._on_status)
         events.subscribe(MarkerUpdated, self._on_marker)
@@ -222,13 +226,32 @@ class ProjectRunRecord:
                 self.log(f"collision with {name}")
 
     def _on_goal(self, event: GoalRequested) -> None:
-        goal = self._goal(event.identity)
-        goal.place = (event.pose.x, event.pose.y)
-        if event.identity in self._unlogged:
-            self._log_status(event.identity, goal)
+        self._goal(event.identity)
+        self._accepted = None
+        self._set_place(event.identity, (event.pose.x, event.pose.y))
+
+    def _on_accepted(self, event: GoalAccepted) -> None:
+        """Take the place of a goal whose message was not received: its sender was connected too late."""
+        self._accepted = (event.pose.x, event.pose.y)
+        latest = next(reversed(list(self.goals)), None)
+        if latest is not None and self.goals[latest].status not in FINAL_STATUSES:
+            self._take_accepted_place(latest)
+
+    def _take_accepted_place(self, name: str) -> None:
+        if self._accepted is not None and self.goals[name].place is None:
+            self._set_place(name, self._accepted)
+        self._accepted = None
+
+    def _set_place(self, name: str, place: Tuple[float, float]) -> None:
+        self.goals[name].place = place
+        if name in self._unlogged:
+            self._log_status(name, self.goals[name])
 
     def _on_status(self, event: GoalStatusUpdated) -> None:
+        is_new = event.identity not in self.goals
         goal = self._goal(event.identity)
+        if is_new:
+            self._take_accepted_place(event.identity)
         status = STATUS_NAMES[event.status] if 0 <= event.status < len(STATUS_NAMES) else "lost"
         if status == goal.status or goal.status in FINAL_STATUSES:
             return

@@ -12,6 +12,7 @@ from evaluation.event_stream import EventStream
 from evaluation.events import ClockAdvanced, MarkerUpdated
 from evaluation.ros.message_events import Reception, marker
 from evaluation.ros.run_topics import (
+    ACCEPTED_GOALS,
     CLOCK,
     CONTACTS,
     ESTIMATE,
@@ -106,7 +107,9 @@ class Observer:
     def _subscribe_goals(self, topic: str) -> None:
         self._goal_topics.add(topic)
         self._subscribe(topic, GOAL_REQUESTS)
-        self._subscribe(topic.rsplit("/", 1)[0] + "/status", GOAL_STATUSES)
+        server = topic.rsplit("/", 1)[0]
+        self._subscribe(f"{server}/status", GOAL_STATUSES)
+        self._subscribe(f"{server}/current_goal", ACCEPTED_GOALS)
 
     def _subscribe_results(self, topic: str) -> None:
         self._subscribe(topic, GOAL_RESULTS)

@@ -15,6 +15,7 @@ import rospy
 from std_msgs.msg import Float64
 
 from evaluation.preload import preload_nodes
+from planar_ros.lockstep.transport import HOLD_TOPIC
 from rospy_transport.node import end_registration_at_shutdown
 from run_project.judging.run_end import GONE_SECONDS, Quiet, is_over
 from run_project.ros.observer import Observer
@@ -33,7 +34,6 @@ from run_project.script_sleeps import ScriptSleeps
 from run_project.stand_ins.sleep import SOCKET_VARIABLE
 from run_project.stand_ins.terminal import WindowLogs
 from run_project.time_hold import TimeHold
-from sim_bridge.ros.timing.time_control import HOLD_TOPIC
 from supervision.display import Display
 from supervision.errors import LaunchError
 from supervision.processes import adopt_orphans, end_descendants

@@ -25,8 +25,6 @@ from sim_bridge.ros.timing.lock_step import LockStep
 from sim_bridge.ros.timing.paced_nodes import Before, PacedNodes
 from sim_bridge.scene import Scene
 
-# Latched: simulated time beyond which no step goes [s]; infinite for none.
-HOLD_TOPIC = "/simulation/hold"
 # Longest single wait [wall s], so that a shutdown is noticed soon.
 LONGEST_WAIT_SECONDS = 0.05
 
@@ -74,7 +72,7 @@ class TimeControl:
         self._requests: List[_StepRequest] = []
         self._deferred: Optional[Callable[[], None]] = None
         self._held_at = math.inf
-        rospy.Subscriber(HOLD_TOPIC, Float64, self._on_hold, queue_size=10, tcp_nodelay=True)
+        rospy.Subscriber(transport.HOLD_TOPIC, Float64, self._on_hold, queue_size=10, tcp_nodelay=True)
         rospy.Subscriber(PROGRESS_TOPIC, Header, self._on_progress, queue_size=100, tcp_nodelay=True)
         rospy.Service("~step", Step, self._on_step)
         self._stall_reporter = StallReporter()
@@ -157,7 +155,7 @@ class TimeControl:
 
     @property
     def _is_held(self) -> bool:
-        """Whether the next step would pass the time of ``HOLD_TOPIC``; the first one always may."""
+        """Whether the next step would pass the time of ``transport.HOLD_TOPIC``; the first one always may."""
         return self._steps > 0 and self._scene.stamp + 0.5 * self._scene.step_seconds > self._held_at
 
     def _on_hold(self, message: Float64) -> None:
