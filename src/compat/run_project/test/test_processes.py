@@ -74,6 +74,7 @@ def test_only_nodes_that_spin_without_sleeping_get_a_lower_priority(cpu_share, r
         (["bash", "home_service.sh"], True, False, 0.0),
         (["python3", str(STAND_INS / "bin" / "xterm"), "-e", "roslaunch"], False, False, PROGRAM_SECONDS),
         (["python3", str(STAND_INS / "bin" / "sleep"), "5"], False, False, 0.0),
+        (["python3", str(STAND_INS / "lib" / "rviz" / "rviz"), "__name:=rviz"], False, False, 0.0),
     ],
 )
 def test_a_program_counts_as_starting_until_it_is_a_node(command, has_children, is_node, seconds):

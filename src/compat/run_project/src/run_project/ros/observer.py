@@ -1,7 +1,8 @@
 """Observer of a project: its topics as run events, wherever the project publishes them."""
 
+import math
 import struct
-from typing import Callable, Iterator, Set
+from typing import AbstractSet, Any, Callable, Iterator, Set, Tuple
 
 import rosgraph
 import rospy
@@ -34,6 +35,10 @@ MARKERS = "/visualization_marker"
 # Nodes whose markers and goals are not those of the project.
 ROBOT_NODES = frozenset(("/amcl", "/explore", "/gazebo", "/map_server", "/move_base", "/slam_gmapping"))
 QUEUE_SIZE = 100
+# Nodes that only receive, by the beginnings of their names.
+OBSERVERS = ("/rviz", "/run_project")
+# Wall time after which actionlib looks again whether the server of a client is connected [s].
+CLIENT_SECONDS = 0.5
 
 
 class Observer:
@@ -45,7 +50,9 @@ class Observer:
     Attributes:
         events: The events.
         record: Goals, markers, contacts and distance of the run.
-        has_goal_clients: Whether a node of the project can send goals.
+        goal_clients: Nodes of the project that can send goals.
+        is_graph_new: Whether topics or services have come or gone between the last two looks, or a client of
+            goals came a short time ago.
         nodes: The nodes that publish.
     """
 
@@ -53,9 +60,12 @@ class Observer:
         self.events = EventStream(on_error=lambda text: rospy.logerr("%s", text))
         self.record = ProjectRunRecord(lambda text: log_event(f"{self.simulated_time:7.1f} s  {text}"))
         self.record.attach(self.events)
-        self.has_goal_clients = False
+        self.goal_clients: AbstractSet[str] = frozenset()
+        self.is_graph_new = False
+        self._client_since = -math.inf
         self.nodes = GraphNodes(lambda name: ConnectionCheck().local_process(name))
         self._topics = RunTopics(self.events, timekeeper=ClockAdvanced)
+        self._acting: Set[Tuple[int, str, str]] = set()
         self._seen: Set[str] = set()
         self._goal_topics: Set[str] = set()
 
@@ -77,10 +87,11 @@ class Observer:
     def _on_pace(self, message: String) -> None:
         self.record.pace_rules = message.data.splitlines()
 
-    def discover_topics(self) -> None:
-        """Subscribe to goal, result and marker topics that are new on the master."""
+    def discover_topics(self, now: float) -> None:
+        """Subscribe to goal, result and marker topics that are new on the master at a wall time [s]."""
         master = rosgraph.Master("/run_project")
-        publishers, _, _ = master.getSystemState()
+        graph = master.getSystemState()
+        publishers, _, _ = graph
         self.nodes.update(node for _, nodes in publishers for node in nodes)
         of_project = {topic for topic, nodes in publishers if not ROBOT_NODES.issuperset(nodes)}
         for topic, kind in master.getTopicTypes():
@@ -94,9 +105,13 @@ class Observer:
             if follow is not None and is_of_project and topic not in self._seen:
                 self._seen.add(topic)
                 follow(topic)
-        self.has_goal_clients = any(
-            topic in self._goal_topics and not ROBOT_NODES.issuperset(nodes) for topic, nodes in publishers
-        )
+        clients = {
+            node for topic, nodes in publishers if topic in self._goal_topics for node in nodes
+        } - ROBOT_NODES
+        self._client_since = now if clients - self.goal_clients else self._client_since
+        acting = _without_observers(graph)
+        self.is_graph_new = acting != self._acting or now - self._client_since < CLIENT_SECONDS
+        self._acting, self.goal_clients = acting, clients
 
     def status(self) -> str:
         """One line for the console: time, distance, latest goal."""
@@ -119,6 +134,17 @@ class Observer:
 
     def _subscribe(self, topic: str, like: EventTopic) -> None:
         self._topics.subscribe(like._replace(name=topic, queue_size=QUEUE_SIZE))
+
+
+def _without_observers(graph: Any) -> Set[Tuple[int, str, str]]:
+    """The master's tables of publishers, subscribers and services, as table, topic and node."""
+    return {
+        (table, topic, node)
+        for table, entries in enumerate(graph)
+        for topic, nodes in entries
+        for node in nodes
+        if not node.startswith(OBSERVERS)
+    }
 
 
 class MarkerReader:

@@ -20,6 +20,8 @@ BUSY_NICENESS = 15
 NODE_SECONDS, PROGRAM_SECONDS = 30.0, 3.0
 # Programs with the simulation's clock.
 SIMULATORS = frozenset(("gazebo", "gzserver", "debug"))
+# A program that only shows what others publish.
+OBSERVER = "rviz"
 SHELLS = ("", "bash", "sh", "dash", "zsh")
 # A wait of one thread from which on it counts as long [s]: those of roscpp and rospy last half a second.
 LONG_SLEEP_SECONDS = 1.0
@@ -129,8 +131,11 @@ def starting_seconds(each: ListedProcess, has_children: bool, is_node: bool) -> 
     """
     if has_children or is_node:
         return 0.0
+    names = [Path(word).name for word in each.command[:2]]
+    if OBSERVER in names:
+        return 0.0
     is_launched = any(word.startswith("__name:=") for word in each.command)
-    if is_launched or any(Path(word).name == "roslaunch" for word in each.command[:2]):
+    if is_launched or "roslaunch" in names:
         return NODE_SECONDS
     is_sleeping = program_of(each.command) == str(STAND_INS / "bin" / "sleep")
     return 0.0 if is_sleeping else PROGRAM_SECONDS

@@ -170,13 +170,13 @@ class ProjectRun:
         moved_wall, moved_time = time.monotonic(), -1.0
         while True:
             now = time.monotonic()
-            observer.discover_topics()
+            observer.discover_topics(now)
             windows = self._windows.opened()
             for window in windows:
                 self._log_event(f"{observer.simulated_time:7.1f} s  window {window}")
             listed, processes = self._list_processes(now)
             is_starting = self._is_something_starting(listed)
-            self._hold.update(now, is_starting, bool(windows))
+            self._hold.update(now, is_starting or observer.is_graph_new, bool(windows))
             commands, awaited = [each.command for each in listed], str(self._parameters["/gazebo/wait_for"])
             self._sleeps.update(is_starting, is_time_due(commands, awaited, observer.nodes.names))
             self._display.show(observer.status())
@@ -219,7 +219,7 @@ class ProjectRun:
             script_is_over=script_is_over,
             has_processes=now - self._process_wall <= GONE_SECONDS,
             has_nodes=now - self._node_wall <= GONE_SECONDS,
-            has_goal_clients=observer.has_goal_clients,
+            has_goal_clients=bool(observer.goal_clients),
             is_one_sleeping=record.all_goals_ended and self._wall_sleeps.are_any(processes, now),
         )
 
