@@ -10,11 +10,13 @@ import pytest
 
 from run_project.ros.graph_nodes import ATTEMPTS, GraphNodes
 from run_project.ros.processes import (
+    BEGIN_SECONDS,
     BUSY_NICENESS,
     LONG_SLEEP_SECONDS,
     NODE_SECONDS,
     PROGRAM_SECONDS,
     BusyProcesses,
+    FirstSleeps,
     ListedProcess,
     WallSleeps,
     is_time_due,
@@ -109,6 +111,29 @@ def test_a_thread_that_sleeps_for_long_is_noticed(code, is_sleeping):
     finally:
         process.kill()
         process.wait()
+
+
+@pytest.mark.parametrize(
+    ("command", "age", "is_sleeping"),
+    [
+        (["sleep", "60"], 1.0, True),
+        (["sleep", "60"], BEGIN_SECONDS + 0.1, False),
+        ([sys.executable, "-c", SLEEP_CODE], 1.0, False),
+        (["cat"], 1.0, False),
+    ],
+)
+def test_a_program_that_sleeps_as_it_begins_is_noticed(command, age, is_sleeping):
+    process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+    try:
+        listed = [ListedProcess(psutil.Process(process.pid), 1, command[0], command, age)]
+        time.sleep(0.3)
+        sleeps = FirstSleeps()
+        assert not sleeps.are_any(listed)
+        time.sleep(0.1)
+        assert sleeps.are_any(listed) == is_sleeping
+    finally:
+        process.kill()
+        process.communicate()
 
 
 def test_a_process_that_has_ended_does_not_sleep():

@@ -4,7 +4,7 @@ import contextlib
 import subprocess
 import time
 from pathlib import Path
-from typing import AbstractSet, Dict, Iterable, List, NamedTuple, Sequence, Tuple
+from typing import AbstractSet, Dict, Iterable, List, NamedTuple, Sequence, Set, Tuple
 
 import psutil
 
@@ -25,6 +25,8 @@ OBSERVER = "rviz"
 SHELLS = ("", "bash", "sh", "dash", "zsh")
 # A wait of one thread from which on it counts as long [s]: those of roscpp and rospy last half a second.
 LONG_SLEEP_SECONDS = 1.0
+# Age up to which a program begins [s].
+BEGIN_SECONDS = 3.0
 # Numbers of system calls on x86-64 and ARM: waits for files; waits for other threads.
 SELECTS, FUTEXES = (b"23", b"270", b"72"), (b"202", b"98")
 
@@ -163,6 +165,32 @@ class WallSleeps:
                     known = before.get(key)
                     self._resting[key] = known if known and known[0] == state else (state, now)
         return any(now - since > LONG_SLEEP_SECONDS for _, since in self._resting.values())
+
+
+class FirstSleeps:
+    """Finds programs that sleep by wall time as they begin, as until their first subscriber has come.
+
+    Those in Python are left out: the main thread of a rospy node sleeps by wall time all the while.
+    """
+
+    def __init__(self, proc: Path = Path("/proc")):
+        self._proc = proc
+        self._asleep: Set[Tuple[int, bytes]] = set()
+
+    def are_any(self, listed: Sequence[ListedProcess]) -> bool:
+        """Return whether a main thread is in the same sleep as at the last look.
+
+        A sleep of roscpp in simulated time consists of many short ones.
+        """
+        before, self._asleep = self._asleep, set()
+        for each in listed:
+            is_python = Path(each.command[0]).name.startswith("python") if each.command else True
+            if each.age < BEGIN_SECONDS and not is_python:
+                with contextlib.suppress(OSError):  # it has ended
+                    state = _timed_wait(self._proc / f"{each.process.pid}/task/{each.process.pid}")
+                    if state.partition(b" ")[0] in SLEEP_CALLS:
+                        self._asleep.add((each.process.pid, state))
+        return not before.isdisjoint(self._asleep)
 
 
 def _timed_wait(thread: Path) -> bytes:

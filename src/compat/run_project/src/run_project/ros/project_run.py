@@ -21,6 +21,7 @@ from run_project.judging.run_end import GONE_SECONDS, Quiet, is_over
 from run_project.ros.observer import Observer
 from run_project.ros.processes import (
     BusyProcesses,
+    FirstSleeps,
     ListedProcess,
     WallSleeps,
     is_time_due,
@@ -101,7 +102,7 @@ class ProjectRun:
         self._last_event_wall = self._process_wall = time.monotonic()
         self._node_wall = math.inf
         self.is_over_time = False
-        self._busy, self._wall_sleeps = BusyProcesses(), WallSleeps()
+        self._busy, self._wall_sleeps, self._first_sleeps = BusyProcesses(), WallSleeps(), FirstSleeps()
         speed = float(str(parameters["/gazebo/speed"]))
         self._hold = TimeHold(speed, lambda: self.observer.simulated_time, lambda at: self._held.publish(at))
         self._resources = contextlib.ExitStack()
@@ -176,7 +177,8 @@ class ProjectRun:
                 self._log_event(f"{observer.simulated_time:7.1f} s  window {window}")
             listed, processes = self._list_processes(now)
             is_starting = self._is_something_starting(listed)
-            self._hold.update(now, is_starting or observer.is_graph_new, bool(windows))
+            is_beginning = is_starting or observer.is_graph_new or self._first_sleeps.are_any(listed)
+            self._hold.update(now, is_beginning, bool(windows))
             commands, awaited = [each.command for each in listed], str(self._parameters["/gazebo/wait_for"])
             self._sleeps.update(is_starting, is_time_due(commands, awaited, observer.nodes.names))
             self._display.show(observer.status())
