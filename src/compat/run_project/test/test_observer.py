@@ -29,6 +29,7 @@ def test_a_changed_graph_and_a_new_client_are_noticed(monkeypatch):
     assert is_new_with(scans, 0.0)
     assert not is_new_with(scans, 1.0)
     assert not is_new_with([*scans, ["/clicked_point", ["/rviz"]]], 2.0), "rviz only receives"
+    assert not is_new_with([*scans, ["/rosout", ["/cockpit_7"]]], 2.5), "so does the cockpit"
     assert not seen.goal_clients
     with_client = [*scans, [GOALS, ["/pick_objects", "/move_base"]]]
     assert is_new_with(with_client, 3.0)

@@ -40,6 +40,7 @@ from run_project.preparation.building import (
 )
 from run_project.preparation.private_root import private_mount_command
 from run_project.ros.headless_rviz import RVIZ_VARIABLE
+from run_project.ros.observer import BYSTANDERS
 from run_project.ros.project_run import ProjectCommand, ProjectRun
 from run_project.ros.scripted_user import PROCEDURES
 from run_project.stand_ins import PACKAGE_FOLDER
@@ -62,7 +63,7 @@ ROS_FOLDER = re.compile(r"/opt/ros/[a-z]+")
 # world, whose plugin publishes at each step of 0.01 s.
 SIMULATOR_PARAMETERS = {
     "pace_all": True,
-    "bystanders": "run_project cockpit",
+    "bystanders": " ".join(BYSTANDERS),
     "odometry_rate": 100,
     "noise": "ideal",
     "range_noise": 0.01,

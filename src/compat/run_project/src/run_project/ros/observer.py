@@ -35,9 +35,10 @@ MARKERS = "/visualization_marker"
 # Nodes whose markers and goals are not those of the project.
 ROBOT_NODES = frozenset(("/amcl", "/explore", "/gazebo", "/map_server", "/move_base", "/slam_gmapping"))
 QUEUE_SIZE = 100
-# Nodes that only receive, by the beginnings of their names.
-OBSERVERS = ("/rviz", "/run_project")
-# Wall time after which actionlib looks again whether the server of a client is connected [s].
+# Beginnings of the names of our nodes that only receive, and of all nodes that do.
+BYSTANDERS = ("run_project", "cockpit")
+OBSERVERS = tuple(f"/{name}" for name in ("rviz", *BYSTANDERS))
+# Wall time after which actionlib looks again whether the server of an action client is connected [s].
 CLIENT_SECONDS = 0.5
 
 
@@ -51,8 +52,8 @@ class Observer:
         events: The events.
         record: Goals, markers, contacts and distance of the run.
         goal_clients: Nodes of the project that can send goals.
-        is_graph_new: Whether topics or services have come or gone between the last two looks, or a client of
-            goals came a short time ago.
+        is_graph_new: Whether topics or services have come or gone between the last two looks, or an action
+            client came a short time ago.
         nodes: The nodes that publish.
     """
 
